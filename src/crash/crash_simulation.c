@@ -1,0 +1,494 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "crash/crash_simulation.h"
+
+#include "crash/barrier.h"
+#include "crash/encounter.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+cp_crash_options cp_crash_options_default(void)
+{
+    return (cp_crash_options){
+        .time_step_s = 0.0005, .duration_s = 0.2, .longest_duration_s = 0.4, .coast_after_s = 0.01};
+}
+
+// ---- ODE as a library ------------------------------------------------------------------------
+
+// ODE's own handlers abort without a word about who was running.
+static void report_ode(int number, const char *format, va_list arguments)
+{
+    fprintf(stderr, "ODE message %d: ", number);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+}
+
+static void report_ode_and_abort(int number, const char *format, va_list arguments)
+{
+    report_ode(number, format, arguments);
+    abort();
+}
+
+cp_status cp_crash_library_begin(cp_error *error)
+{
+    if (!dInitODE2(0) || !dAllocateODEDataForThread(dAllocateMaskAll))
+        return cp_fail(error, CP_CRASH_FAILED, "the physics engine ODE could not be initialised");
+    dSetMessageHandler(report_ode);
+    dSetErrorHandler(report_ode_and_abort);
+    dSetDebugHandler(report_ode_and_abort);
+    return CP_OK;
+}
+
+void cp_crash_library_end(void)
+{
+    dCloseODE();
+}
+
+cp_status cp_crash_thread_begin(cp_error *error)
+{
+    if (!dAllocateODEDataForThread(dAllocateMaskAll))
+        return cp_fail(error, CP_CRASH_FAILED, "ODE could not prepare a thread");
+    return CP_OK;
+}
+
+void cp_crash_thread_end(void)
+{
+    dCleanupODEAllDataForThread();
+}
+
+// ---- one run ---------------------------------------------------------------------------------
+
+// Everything that changes during a run. The plane is a's frame at first contact, moving along with
+// the common centre of mass of two cars: what a common velocity adds is then added exactly, at
+// the edge, and rounding does not depend on it.
+typedef struct crash_run {
+    const cp_crash_options *options;
+    dWorldID world;
+    dThreadingImplementationID threading;
+    cp_car car[2];
+    int car_count;
+    cp_vec2 common_m_s; /* velocity of the plane */
+    cp_encounter encounter;
+    cp_pose start[2];
+    cp_body_state last[2];      /* centre of gravity at the end of the last step */
+    cp_vec2 first_relative_m_s; /* of a against b at first contact */
+    double last_approach_m_s;
+    size_t sample;
+    cp_crash_result *result;
+} crash_run;
+
+static cp_body_state seen_from(cp_pose frame, cp_body_state state)
+{
+    return (cp_body_state){.cog_m = cp_pose_to_local(frame, state.cog_m),
+                           .yaw_rad = cp_wrap_angle(state.yaw_rad - frame.yaw_rad),
+                           .velocity_m_s = cp_vec2_rotate(state.velocity_m_s, -frame.yaw_rad),
+                           .yaw_rate_rad_s = state.yaw_rate_rad_s};
+}
+
+// A world of its own, with its own threading, so that worlds on several threads do not meet.
+static cp_status create_world(crash_run *run, cp_error *error)
+{
+    run->world = dWorldCreate();
+    run->threading = dThreadingAllocateSelfThreadedImplementation();
+    if (run->world == NULL || run->threading == NULL)
+        return cp_fail_memory(error, "physics world");
+    dWorldSetStepThreadingImplementation(
+        run->world, dThreadingImplementationGetFunctions(run->threading), run->threading);
+    dWorldSetGravity(run->world, 0.0, 0.0, 0.0);
+    dWorldSetERP(run->world, 0.6);
+    dWorldSetCFM(run->world, 1e-11);
+    return CP_OK;
+}
+
+static void destroy_world(crash_run *run)
+{
+    if (run->world != NULL)
+        dWorldDestroy(run->world);
+    if (run->threading != NULL)
+        dThreadingFreeImplementation(run->threading);
+}
+
+// Motion of the centre of gravity now, seen from the ground.
+static cp_body_state ground_state(const crash_run *run, int c)
+{
+    cp_body_state state = cp_car_cog_state(&run->car[c]);
+    double time_s = run->options->time_step_s * (double)run->sample;
+    state.cog_m = cp_vec2_add(state.cog_m, cp_vec2_scale(run->common_m_s, time_s));
+    state.velocity_m_s = cp_vec2_add(state.velocity_m_s, run->common_m_s);
+    return state;
+}
+
+// Travel along the approach until the outlines just touch, from well before; false: they miss.
+static bool find_first_touch(crash_run *run, cp_vec2 approach, double *travel_m)
+{
+    double s_m = -1.0;
+    cp_displacement move[2] = {{{0.0, 0.0}, 0.0}, {{0.0, 0.0}, 0.0}};
+    for (; s_m > -30.0; s_m -= 1.0) {
+        move[0].shift_m = cp_vec2_scale(approach, s_m);
+        if (cp_encounter_distance(&run->encounter, move) > 0.0)
+            break;
+    }
+    while (s_m < 30.0) {
+        move[0].shift_m = cp_vec2_scale(approach, s_m);
+        double distance_m = cp_encounter_distance(&run->encounter, move);
+        if (distance_m < 1e-9) {
+            *travel_m = s_m;
+            return true;
+        }
+        s_m += fmax(distance_m, 1e-9);
+    }
+    return false;
+}
+
+static void translate_car(cp_car *car, cp_vec2 shift_m)
+{
+    for (int k = 0; k < CP_BODY_COUNT; k++) {
+        const dReal *p = dBodyGetPosition(car->body[k]);
+        dBodySetPosition(car->body[k], p[0] + shift_m.x, p[1] + shift_m.y, 0.0);
+    }
+}
+
+// Build both parties in a's frame and move a along the relative velocity until they touch.
+static cp_status set_up(crash_run *run, const cp_vehicle_model *models[2],
+                        const cp_crash_configuration *configuration, cp_error *error)
+{
+    cp_pose frame = {configuration->vehicle[0].cog_m, configuration->vehicle[0].yaw_rad};
+    cp_body_state states[2];
+    for (int k = 0; k < run->car_count; k++)
+        states[k] = seen_from(frame, configuration->vehicle[k]);
+    if (run->car_count == 2) {
+        double share = models[1]->mass_kg / (models[0]->mass_kg + models[1]->mass_kg);
+        cp_vec2 apart = cp_vec2_sub(states[1].velocity_m_s, states[0].velocity_m_s);
+        run->common_m_s = cp_vec2_add(states[0].velocity_m_s, cp_vec2_scale(apart, share));
+    }
+    cp_vec2 approach = {0.0, 0.0};
+    for (int k = 0; k < run->car_count; k++) {
+        cp_body_state state = states[k];
+        state.velocity_m_s = cp_vec2_sub(state.velocity_m_s, run->common_m_s);
+        cp_status status = cp_car_build(&run->car[k], models[k], run->world, &state, error);
+        if (status != CP_OK)
+            return status;
+        run->encounter.car[k] = &run->car[k];
+        approach = cp_vec2_add(approach, cp_vec2_scale(state.velocity_m_s, k == 0 ? 1.0 : -1.0));
+    }
+    run->encounter.friction_1 = models[0]->friction_1;
+    if (run->car_count == 2) {
+        run->encounter.friction_1 = sqrt(models[0]->friction_1 * models[1]->friction_1);
+    } else {
+        cp_pose pose = {cp_pose_to_local(frame, configuration->barrier_pose.position_m),
+                        cp_wrap_angle(configuration->barrier_pose.yaw_rad - frame.yaw_rad)};
+        run->encounter.barrier = cp_barrier_outline(&configuration->barrier, pose);
+        if (configuration->barrier.friction_1 >= 0.0)
+            run->encounter.friction_1 = configuration->barrier.friction_1;
+    }
+
+    cp_encounter_set_pairs(&run->encounter);
+
+    double speed_m_s = cp_vec2_length(approach), travel_m = 0.0;
+    if (speed_m_s > 0.0 &&
+        find_first_touch(run, cp_vec2_scale(approach, 1.0 / speed_m_s), &travel_m)) {
+        run->result->touched = true;
+        run->result->shift_m = travel_m;
+        translate_car(&run->car[0], cp_vec2_scale(approach, travel_m / speed_m_s));
+    }
+    for (int k = 0; k < run->car_count; k++) {
+        run->last[k] = ground_state(run, k);
+        run->start[k] = (cp_pose){run->last[k].cog_m, run->last[k].yaw_rad};
+    }
+    return CP_OK;
+}
+
+// ---- recording -------------------------------------------------------------------------------
+
+// Sample k of a pulse: motion now; the acceleration is the mean of the steps before and after, so
+// the one after is added when it is known.
+static void record_motion(cp_pulse *pulse, size_t k, const cp_pose *start,
+                          const cp_body_state *state)
+{
+    cp_vec2 moved = cp_pose_to_local(*start, state->cog_m);
+    pulse->channel[CP_CHANNEL_X][k] = moved.x;
+    pulse->channel[CP_CHANNEL_Y][k] = moved.y;
+    pulse->channel[CP_CHANNEL_YAW_RATE][k] = state->yaw_rate_rad_s;
+    if (k == 0) {
+        cp_vec2 velocity = cp_vec2_rotate(state->velocity_m_s, -state->yaw_rad);
+        pulse->channel[CP_CHANNEL_VX][0] = velocity.x;
+        pulse->channel[CP_CHANNEL_VY][0] = velocity.y;
+        return;
+    }
+    double turned =
+        cp_wrap_angle(state->yaw_rad - start->yaw_rad - pulse->channel[CP_CHANNEL_YAW][k - 1]);
+    pulse->channel[CP_CHANNEL_YAW][k] = pulse->channel[CP_CHANNEL_YAW][k - 1] + turned;
+}
+
+static void record_step(crash_run *run, double dt)
+{
+    size_t k = ++run->sample;
+    for (int c = 0; c < run->car_count; c++) {
+        cp_pulse *pulse = &run->result->pulse[c];
+        cp_body_state now = ground_state(run, c);
+
+        // Acceleration of the step in the vehicle axes half-way through it.
+        double turned = cp_wrap_angle(now.yaw_rad - run->last[c].yaw_rad);
+        cp_vec2 change = cp_vec2_sub(now.velocity_m_s, run->last[c].velocity_m_s);
+        cp_vec2 gain = cp_vec2_rotate(change, -(run->last[c].yaw_rad + 0.5 * turned));
+        cp_vec2 acceleration = cp_vec2_scale(gain, 1.0 / dt);
+        double yaw_acceleration = (now.yaw_rate_rad_s - run->last[c].yaw_rate_rad_s) / dt;
+        record_motion(pulse, k, &run->start[c], &now);
+        pulse->channel[CP_CHANNEL_VX][k] = pulse->channel[CP_CHANNEL_VX][k - 1] + gain.x;
+        pulse->channel[CP_CHANNEL_VY][k] = pulse->channel[CP_CHANNEL_VY][k - 1] + gain.y;
+        pulse->channel[CP_CHANNEL_AX][k - 1] += 0.5 * acceleration.x;
+        pulse->channel[CP_CHANNEL_AY][k - 1] += 0.5 * acceleration.y;
+        pulse->channel[CP_CHANNEL_YAW_ACC][k - 1] += 0.5 * yaw_acceleration;
+        pulse->channel[CP_CHANNEL_AX][k] += 0.5 * acceleration.x;
+        pulse->channel[CP_CHANNEL_AY][k] += 0.5 * acceleration.y;
+        pulse->channel[CP_CHANNEL_YAW_ACC][k] += 0.5 * yaw_acceleration;
+        run->last[c] = now;
+    }
+}
+
+// Free of contact for good: constant world velocity and yaw rate to the end of the record.
+static void coast(crash_run *run, size_t last, double dt)
+{
+    size_t from = run->sample;
+    for (int c = 0; c < run->car_count; c++) {
+        cp_pulse *pulse = &run->result->pulse[c];
+        cp_body_state state = run->last[c];
+        for (size_t k = from + 1; k <= last; k++) {
+            double t_s = dt * (double)(k - from);
+            state.cog_m = cp_vec2_add(run->last[c].cog_m, cp_vec2_scale(state.velocity_m_s, t_s));
+            state.yaw_rad = run->last[c].yaw_rad + t_s * state.yaw_rate_rad_s;
+            record_motion(pulse, k, &run->start[c], &state);
+            pulse->channel[CP_CHANNEL_VX][k] = pulse->channel[CP_CHANNEL_VX][k - 1];
+            pulse->channel[CP_CHANNEL_VY][k] = pulse->channel[CP_CHANNEL_VY][k - 1];
+        }
+    }
+    run->sample = last;
+}
+
+// ---- the loop --------------------------------------------------------------------------------
+
+static bool all_finite(const crash_run *run)
+{
+    for (int c = 0; c < run->car_count; c++) {
+        const cp_body_state *state = &run->last[c];
+        if (!isfinite(state->velocity_m_s.x) || !isfinite(state->velocity_m_s.y) ||
+            !isfinite(state->yaw_rate_rad_s))
+            return false;
+    }
+    return true;
+}
+
+// Whether the parties, moving on as they are, meet again before the horizon.
+static bool will_meet_again(const crash_run *run, double horizon_s)
+{
+    const double look_s = 0.004;
+    for (double t_s = look_s; t_s <= horizon_s; t_s += look_s) {
+        cp_displacement move[2] = {{{0.0, 0.0}, 0.0}, {{0.0, 0.0}, 0.0}};
+        for (int c = 0; c < run->car_count; c++)
+            move[c] = (cp_displacement){
+                cp_vec2_scale(cp_vec2_sub(run->last[c].velocity_m_s, run->common_m_s), t_s),
+                run->last[c].yaw_rate_rad_s * t_s};
+        if (cp_encounter_distance(&run->encounter, move) < 0.02)
+            return true;
+    }
+    return false;
+}
+
+static void update_energy(crash_run *run)
+{
+    cp_crash_energy *energy = &run->result->energy;
+    energy->kinetic_j = 0.0;
+    energy->elastic_j = run->encounter.elastic_normal_j + run->encounter.elastic_friction_j;
+    energy->plastic_j = 0.0;
+    energy->joint_damping_j = 0.0;
+    for (int c = 0; c < run->car_count; c++) {
+        energy->kinetic_j += cp_car_kinetic_energy(&run->car[c]);
+        energy->elastic_j += cp_car_elastic_energy(&run->car[c]);
+        energy->plastic_j += cp_car_plastic_energy(&run->car[c]);
+        energy->joint_damping_j += run->car[c].joint_damping_j;
+    }
+    energy->friction_j = run->encounter.friction_work_j - run->encounter.elastic_friction_j;
+    energy->contact_damping_j = run->encounter.normal_work_j - run->encounter.elastic_normal_j;
+    double mechanical_j = energy->kinetic_j + energy->elastic_j;
+    energy->highest_mechanical_j = fmax(energy->highest_mechanical_j, mechanical_j);
+}
+
+static cp_crash_momentum momentum_now(const crash_run *run)
+{
+    cp_crash_momentum momentum = {{0.0, 0.0}, 0.0};
+    cp_vec2 middle_m = run->start[0].position_m;
+    if (run->car_count == 2)
+        middle_m = cp_vec2_scale(cp_vec2_add(middle_m, run->start[1].position_m), 0.5);
+    for (int c = 0; c < run->car_count; c++) {
+        double angular_kg_m2_s = 0.0;
+        cp_vec2 linear = cp_car_momentum(&run->car[c], &angular_kg_m2_s);
+        momentum.angular_kg_m2_s += angular_kg_m2_s - cp_vec2_cross(middle_m, linear);
+        linear = cp_vec2_add(linear, cp_vec2_scale(run->common_m_s, run->car[c].model->mass_kg));
+        momentum.linear_kg_m_s = cp_vec2_add(momentum.linear_kg_m_s, linear);
+    }
+    return momentum;
+}
+
+// First zero of the relative velocity of the two cars along its first direction.
+static void watch_common_velocity(crash_run *run, double time_s, double dt)
+{
+    if (run->car_count < 2 || isfinite(run->result->t_common_s))
+        return;
+    cp_vec2 relative = cp_vec2_sub(run->last[0].velocity_m_s, run->last[1].velocity_m_s);
+    double now_m_s = cp_vec2_dot(relative, run->first_relative_m_s);
+    double last_m_s = run->last_approach_m_s;
+    if (now_m_s <= 0.0 && last_m_s > 0.0)
+        run->result->t_common_s = time_s - dt * now_m_s / (now_m_s - last_m_s);
+    run->last_approach_m_s = now_m_s;
+}
+
+static bool olc_decided(const crash_run *run)
+{
+    double dt = run->options->time_step_s;
+    for (int c = 0; c < run->car_count; c++) {
+        cp_olc olc =
+            cp_olc_from_velocity(run->result->pulse[c].channel[CP_CHANNEL_VX], run->sample + 1, dt);
+        if (olc.status == CP_OLC_VALUE && olc.t2_s > dt * (double)run->sample)
+            return false;
+    }
+    return true;
+}
+
+// One step of the world; returns whether the parties pressed on each other.
+static bool advance(crash_run *run, double dt)
+{
+    for (int c = 0; c < run->car_count; c++)
+        cp_car_apply_forces(&run->car[c]);
+    cp_encounter_apply_forces(&run->encounter, dt);
+    update_energy(run);
+    dWorldStep(run->world, dt);
+    bool pressed = cp_encounter_end_step(&run->encounter, dt);
+    for (int c = 0; c < run->car_count; c++)
+        cp_car_after_step(&run->car[c], dt);
+    record_step(run, dt);
+    return pressed;
+}
+
+static cp_status simulate_contact(crash_run *run, cp_error *error)
+{
+    const cp_crash_options *options = run->options;
+    double dt = options->time_step_s;
+    size_t wanted = (size_t)llround(options->duration_s / dt);
+    size_t longest = (size_t)llround(fmax(options->duration_s, options->longest_duration_s) / dt);
+    size_t coast_after = (size_t)llround(options->coast_after_s / dt);
+    size_t last_pressed = 0;
+
+    // Free from the beginning: nothing to simulate.
+    bool free_again = !run->result->touched;
+    while (!free_again && run->sample < longest) {
+        if (advance(run, dt)) {
+            last_pressed = run->sample;
+            run->result->separation_s = dt * (double)run->sample;
+        }
+        if (!all_finite(run))
+            return cp_fail(error, CP_CRASH_FAILED,
+                           "the crash simulation left the finite numbers at %g s",
+                           dt * (double)run->sample);
+        watch_common_velocity(run, dt * (double)run->sample, dt);
+        size_t quiet = run->sample - last_pressed;
+        if (quiet >= coast_after && quiet % coast_after == 0)
+            free_again = !will_meet_again(run, dt * (double)(longest - run->sample));
+    }
+    update_energy(run);
+    run->result->momentum_end = momentum_now(run);
+
+    // The record ends when asked, or when contact has ended and OLC is decided, if that is later.
+    size_t end = run->sample > wanted ? run->sample : wanted;
+    if (run->sample < end)
+        coast(run, end, dt);
+    if (!olc_decided(run))
+        coast(run, longest, dt);
+    return CP_OK;
+}
+
+static cp_status evaluate(crash_run *run, cp_error *error)
+{
+    cp_crash_result *result = run->result;
+    for (int c = 0; c < run->car_count; c++) {
+        result->pulse[c].sample_count = run->sample + 1;
+        cp_status status = cp_severity_of_pulse(&result->pulse[c], result->separation_s,
+                                                run->car_count == 1, &result->severity[c], error);
+        if (status != CP_OK)
+            return status;
+        result->crush_m[c] = run->car[c].crush_m;
+    }
+    return CP_OK;
+}
+
+// Start values of what is watched through the run.
+static void begin_record(crash_run *run)
+{
+    cp_crash_result *result = run->result;
+    result->t_common_s = NAN;
+    for (int c = 0; c < run->car_count; c++)
+        record_motion(&result->pulse[c], 0, &run->start[c], &run->last[c]);
+    if (run->car_count == 2) {
+        run->first_relative_m_s = cp_vec2_sub(run->last[0].velocity_m_s, run->last[1].velocity_m_s);
+        run->last_approach_m_s = cp_vec2_dot(run->first_relative_m_s, run->first_relative_m_s);
+    }
+    update_energy(run);
+    result->energy.start_j = result->energy.kinetic_j;
+    result->momentum_start = momentum_now(run);
+}
+
+static cp_status check_options(const cp_crash_options *options, cp_error *error)
+{
+    if (!(options->time_step_s >= 1e-6 && options->time_step_s <= 0.002))
+        return cp_fail(error, CP_BAD_INPUT, "time_step_s must be between 1e-6 and 0.002, found %g",
+                       options->time_step_s);
+    if (!(options->duration_s >= options->time_step_s && options->duration_s <= 2.0))
+        return cp_fail(error, CP_BAD_INPUT, "duration_s must be between one step and 2, found %g",
+                       options->duration_s);
+    return CP_OK;
+}
+
+cp_status cp_crash_simulate(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
+                            const cp_crash_configuration *configuration,
+                            const cp_crash_options *options, cp_crash_result *result,
+                            cp_error *error)
+{
+    *result = (cp_crash_result){.vehicle_count = model_b != NULL ? 2 : 1};
+    cp_status status = check_options(options, error);
+    if (status != CP_OK)
+        return status;
+    crash_run *run = calloc(1, sizeof *run);
+    if (run == NULL)
+        return cp_fail_memory(error, "crash simulation");
+    run->options = options;
+    run->result = result;
+    run->car_count = result->vehicle_count;
+    const cp_vehicle_model *models[2] = {model_a, model_b};
+
+    double longest_s = fmax(options->duration_s, options->longest_duration_s);
+    size_t samples = (size_t)llround(longest_s / options->time_step_s) + 1;
+    for (int c = 0; status == CP_OK && c < run->car_count; c++)
+        status = cp_pulse_create(&result->pulse[c], samples, options->time_step_s, error);
+    if (status == CP_OK)
+        status = create_world(run, error);
+    if (status == CP_OK)
+        status = set_up(run, models, configuration, error);
+    if (status == CP_OK) {
+        begin_record(run);
+        status = simulate_contact(run, error);
+    }
+    if (status == CP_OK)
+        status = evaluate(run, error);
+    destroy_world(run);
+    free(run);
+    if (status != CP_OK)
+        cp_crash_result_destroy(result);
+    return status;
+}
+
+void cp_crash_result_destroy(cp_crash_result *result)
+{
+    for (int c = 0; c < 2; c++)
+        cp_pulse_destroy(&result->pulse[c]);
+    *result = (cp_crash_result){0};
+}

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CRASH_CRASH_SIMULATION_H
+#define CRASH_CRASH_SIMULATION_H
+
+#include "crash/crash_configuration.h"
+#include "pulse/severity.h"
+
+/* One crash on the multibody surrogate. */
+
+typedef struct cp_crash_options {
+    double time_step_s;        /* default 0.0005 */
+    double duration_s;         /* at least this long, default 0.2 */
+    double longest_duration_s; /* at most, default 0.4 */
+    double coast_after_s;      /* free of contact this long: coast analytically, default 0.01 */
+} cp_crash_options;
+
+cp_crash_options cp_crash_options_default(void);
+
+/* Energies of all bodies together at the end, J; start = kinetic at first contact. For two cars in
+ * the frame of their common centre of mass: what the crash can turn into anything. */
+typedef struct cp_crash_energy {
+    double start_j;
+    double kinetic_j;
+    double elastic_j;
+    double plastic_j;
+    double friction_j;
+    double contact_damping_j;
+    double joint_damping_j;
+    double highest_mechanical_j; /* largest kinetic + elastic over the run */
+} cp_crash_energy;
+
+/* Momentum of all bodies together, and angular momentum about the middle between the two centres
+ * of gravity at first contact (moving with the common centre of mass), in a's frame at first
+ * contact. Two cars keep both; a barrier takes them. */
+typedef struct cp_crash_momentum {
+    cp_vec2 linear_kg_m_s;
+    double angular_kg_m2_s;
+} cp_crash_momentum;
+
+typedef struct cp_crash_result {
+    int vehicle_count; /* 1 (barrier) or 2 */
+    cp_pulse pulse[2]; /* raw, owned */
+    cp_severity severity[2];
+    double crush_m[2];   /* largest shortening of the longer-pushed side, bumper to firewall */
+    double separation_s; /* last contact force */
+    double t_common_s;   /* two cars: first zero of relative velocity along its first direction */
+    double shift_m;      /* moved along the relative velocity until the outlines just touched */
+    bool touched;        /* false: the outlines never met; pulses are of undisturbed motion */
+    cp_crash_energy energy;
+    cp_crash_momentum momentum_start;
+    cp_crash_momentum momentum_end;
+} cp_crash_result;
+
+/* Simulate. model_b is NULL against a barrier. The result is the caller's to destroy (also after
+ * an error, when it is zeroed). Threads: call cp_crash_thread_begin/_end in each. Errors:
+ * CP_NO_MEMORY, CP_CRASH_FAILED (a state that is not finite, with the time). */
+CP_MUST_CHECK cp_status cp_crash_simulate(const cp_vehicle_model *model_a,
+                                          const cp_vehicle_model *model_b,
+                                          const cp_crash_configuration *configuration,
+                                          const cp_crash_options *options, cp_crash_result *result,
+                                          cp_error *error);
+void cp_crash_result_destroy(cp_crash_result *result);
+
+/* Process-wide: once before the first simulation, and once after the last. */
+CP_MUST_CHECK cp_status cp_crash_library_begin(cp_error *error);
+void cp_crash_library_end(void);
+/* In every further thread that simulates. */
+CP_MUST_CHECK cp_status cp_crash_thread_begin(cp_error *error);
+void cp_crash_thread_end(void);
+
+#endif

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "crash/encounter.h"
+
+// Number of outlines of a party: a car's, or the barrier's one.
+static int outline_count(const cp_encounter *encounter, int party)
+{
+    return encounter->car[party] != NULL ? CP_OUTLINE_COUNT : 1;
+}
+
+static cp_outline outline_now(const cp_encounter *encounter, int party, int index)
+{
+    const cp_car *car = encounter->car[party];
+    return car != NULL ? cp_car_outline_now(car, index) : encounter->barrier;
+}
+
+static cp_outline displaced(cp_outline outline, cp_vec2 pivot_m, cp_displacement displacement)
+{
+    cp_vec2 arm = cp_vec2_rotate(cp_vec2_sub(outline.centre_m, pivot_m), displacement.turn_rad);
+    outline.centre_m = cp_vec2_add(cp_vec2_add(pivot_m, arm), displacement.shift_m);
+    outline.yaw_rad += displacement.turn_rad;
+    return outline;
+}
+
+static cp_vec2 pivot_of(const cp_encounter *encounter, int party)
+{
+    const cp_car *car = encounter->car[party];
+    return car != NULL ? cp_car_cog_state(car).cog_m : encounter->barrier.centre_m;
+}
+
+double cp_encounter_distance(const cp_encounter *encounter, const cp_displacement displacement[2])
+{
+    static const cp_displacement NONE[2] = {{{0.0, 0.0}, 0.0}, {{0.0, 0.0}, 0.0}};
+    if (displacement == NULL)
+        displacement = NONE;
+    cp_outline outline[2][CP_OUTLINE_COUNT];
+    for (int party = 0; party < 2; party++) {
+        cp_vec2 pivot_m = pivot_of(encounter, party);
+        for (int k = 0; k < outline_count(encounter, party); k++)
+            outline[party][k] =
+                displaced(outline_now(encounter, party, k), pivot_m, displacement[party]);
+    }
+    double nearest_m = INFINITY;
+    for (int i = 0; i < outline_count(encounter, 0); i++)
+        for (int j = 0; j < outline_count(encounter, 1); j++)
+            nearest_m = fmin(nearest_m, cp_outline_distance(&outline[0][i], &outline[1][j]));
+    return nearest_m;
+}
+
+// Two springs (or dampers) in series; a rigid partner has none.
+static double in_series(double one, double other)
+{
+    if (one <= 0.0 || other <= 0.0)
+        return 0.0;
+    return isinf(other) ? one : one * other / (one + other);
+}
+
+void cp_encounter_set_pairs(cp_encounter *encounter)
+{
+    for (int i = 0; i < outline_count(encounter, 0); i++) {
+        for (int j = 0; j < outline_count(encounter, 1); j++) {
+            const cp_car *a = encounter->car[0], *b = encounter->car[1];
+            double stiffness_b_n_m = b != NULL ? b->outline[j].stiffness_n_m : (double)INFINITY;
+            double damping_b_n_s_m = b != NULL ? b->outline[j].damping_n_s_m : (double)INFINITY;
+            encounter->pair[i][j] = (cp_encounter_pair){
+                .body = {a->body[a->outline[i].body],
+                         b != NULL ? b->body[b->outline[j].body] : NULL},
+                .stiffness_n_m = in_series(a->outline[i].stiffness_n_m, stiffness_b_n_m),
+                .damping_n_s_m = in_series(a->outline[i].damping_n_s_m, damping_b_n_s_m)};
+        }
+    }
+}
+
+static cp_vec2 relative_velocity(const cp_encounter_pair *pair, cp_vec2 point_m)
+{
+    cp_vec2 velocity = cp_body_velocity_at(pair->body[0], point_m);
+    if (pair->body[1] == NULL)
+        return velocity;
+    return cp_vec2_sub(velocity, cp_body_velocity_at(pair->body[1], point_m));
+}
+
+// Inverse of the mass a push at point_m along direction meets on one free body.
+static double inverse_mass(dBodyID body, cp_vec2 point_m, cp_vec2 direction)
+{
+    if (body == NULL)
+        return 0.0;
+    dMass mass;
+    dBodyGetMass(body, &mass);
+    const dReal *p = dBodyGetPosition(body);
+    double arm_m = cp_vec2_cross(cp_vec2_sub(point_m, (cp_vec2){p[0], p[1]}), direction);
+    return 1.0 / mass.mass + arm_m * arm_m / mass.I[10];
+}
+
+// The most a damper may be: two points together stop the bodies, taken alone, within one step.
+static double damping_limit(const cp_encounter_pair *pair, cp_vec2 point_m, cp_vec2 direction,
+                            double time_step_s)
+{
+    double inverse_kg = inverse_mass(pair->body[0], point_m, direction) +
+                        inverse_mass(pair->body[1], point_m, direction);
+    return 0.5 / (inverse_kg * time_step_s);
+}
+
+static void push(const cp_encounter_pair *pair, cp_vec2 force_n, cp_vec2 at)
+{
+    dBodyAddForceAtPos(pair->body[0], -force_n.x, -force_n.y, 0.0, at.x, at.y, 0.0);
+    if (pair->body[1] != NULL)
+        dBodyAddForceAtPos(pair->body[1], force_n.x, force_n.y, 0.0, at.x, at.y, 0.0);
+}
+
+// Spring and damper of every point; returns the whole pressure, and where its middle is.
+static double press(cp_encounter *encounter, cp_encounter_pair *pair, double time_step_s)
+{
+    const cp_manifold *manifold = &pair->manifold;
+    double total_n = 0.0;
+    cp_vec2 moment = {0.0, 0.0};
+    for (int k = 0; k < manifold->count; k++) {
+        cp_vec2 at = manifold->point[k].position_m;
+        double depth_m = fmax(0.0, manifold->point[k].depth_m);
+        pair->relative_m_s[k] = relative_velocity(pair, at);
+        double damping_n_s_m =
+            fmin(pair->damping_n_s_m, damping_limit(pair, at, manifold->normal, time_step_s));
+        double force_n = depth_m * pair->stiffness_n_m +
+                         damping_n_s_m * cp_vec2_dot(pair->relative_m_s[k], manifold->normal);
+        pair->press_n[k] = depth_m > 0.0 ? fmax(0.0, force_n) : 0.0;
+        encounter->elastic_normal_j += 0.5 * pair->stiffness_n_m * depth_m * depth_m;
+        push(pair, cp_vec2_scale(manifold->normal, pair->press_n[k]), at);
+        total_n += pair->press_n[k];
+        moment = cp_vec2_add(moment, cp_vec2_scale(at, pair->press_n[k]));
+    }
+    pair->friction_at_m =
+        total_n > 0.0 ? cp_vec2_scale(moment, 1.0 / total_n) : manifold->point[0].position_m;
+    return total_n;
+}
+
+// Friction spring with a damper, both together within Coulomb's limit; beyond it the spring slides.
+static void drag(cp_encounter *encounter, cp_encounter_pair *pair, double pressure_n,
+                 double time_step_s)
+{
+    cp_vec2 tangent = {-pair->manifold.normal.y, pair->manifold.normal.x};
+    cp_vec2 at = pair->friction_at_m;
+    double limit_n = encounter->friction_1 * pressure_n;
+    double slack_m = limit_n / pair->stiffness_n_m;
+    pair->stuck_m = fmin(slack_m, fmax(-slack_m, pair->stuck_m));
+    pair->relative_m_s[2] = relative_velocity(pair, at);
+    double damping_n_s_m = fmin(pair->damping_n_s_m, damping_limit(pair, at, tangent, time_step_s));
+    double force_n = pair->stiffness_n_m * pair->stuck_m +
+                     damping_n_s_m * cp_vec2_dot(pair->relative_m_s[2], tangent);
+    pair->drag_n = fmin(limit_n, fmax(-limit_n, force_n));
+    encounter->elastic_friction_j += 0.5 * pair->stiffness_n_m * pair->stuck_m * pair->stuck_m;
+    push(pair, cp_vec2_scale(tangent, pair->drag_n), at);
+}
+
+void cp_encounter_apply_forces(cp_encounter *encounter, double time_step_s)
+{
+    encounter->elastic_normal_j = 0.0;
+    encounter->elastic_friction_j = 0.0;
+    cp_outline outline[2][CP_OUTLINE_COUNT];
+    for (int party = 0; party < 2; party++)
+        for (int k = 0; k < outline_count(encounter, party); k++)
+            outline[party][k] = outline_now(encounter, party, k);
+    for (int i = 0; i < outline_count(encounter, 0); i++) {
+        for (int j = 0; j < outline_count(encounter, 1); j++) {
+            cp_encounter_pair *pair = &encounter->pair[i][j];
+            pair->manifold = cp_outline_contact(&outline[0][i], &outline[1][j], 0.0);
+            if (pair->manifold.count == 0) {
+                pair->stuck_m = 0.0;
+                continue;
+            }
+            double pressure_n = press(encounter, pair, time_step_s);
+            drag(encounter, pair, pressure_n, time_step_s);
+        }
+    }
+}
+
+// Work of a pair's forces over the step: force times mean of the relative velocities at its point
+// before and after. The friction spring follows the motion.
+static bool settle_pair(cp_encounter *encounter, cp_encounter_pair *pair, double time_step_s)
+{
+    cp_vec2 normal = pair->manifold.normal, tangent = {-normal.y, normal.x};
+    bool pressed = false;
+    for (int k = 0; k < pair->manifold.count; k++) {
+        cp_vec2 after_m_s = relative_velocity(pair, pair->manifold.point[k].position_m);
+        double mean_m_s = 0.5 * cp_vec2_dot(cp_vec2_add(pair->relative_m_s[k], after_m_s), normal);
+        encounter->normal_work_j += pair->press_n[k] * mean_m_s * time_step_s;
+        pressed = pressed || pair->press_n[k] > 0.0;
+    }
+    double before_m_s = cp_vec2_dot(pair->relative_m_s[2], tangent);
+    double after_m_s = cp_vec2_dot(relative_velocity(pair, pair->friction_at_m), tangent);
+    encounter->friction_work_j += pair->drag_n * 0.5 * (before_m_s + after_m_s) * time_step_s;
+    pair->stuck_m += after_m_s * time_step_s;
+    return pressed;
+}
+
+bool cp_encounter_end_step(cp_encounter *encounter, double time_step_s)
+{
+    bool pressed = false;
+    for (int i = 0; i < outline_count(encounter, 0); i++)
+        for (int j = 0; j < outline_count(encounter, 1); j++)
+            if (encounter->pair[i][j].manifold.count > 0 &&
+                settle_pair(encounter, &encounter->pair[i][j], time_step_s))
+                pressed = true;
+    return pressed;
+}

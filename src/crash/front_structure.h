@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CRASH_FRONT_STRUCTURE_H
+#define CRASH_FRONT_STRUCTURE_H
+
+#include "crash/contact.h"
+#include "crash/crash_configuration.h"
+#include "crash/crush_element.h"
+
+#include <ode/ode.h>
+
+_Static_assert(sizeof(dReal) == 8, "ODE must be built with double precision");
+
+/* One car as planar rigid bodies in an ODE world: bodies, joints, force elements, outlines.
+ * Everything stays exactly in the plane z = 0, because nothing ever pushes out of it. */
+
+enum {
+    CP_BODY_ROOT, /* everything behind the firewall */
+    CP_BODY_LONGITUDINAL_LEFT,
+    CP_BODY_LONGITUDINAL_RIGHT,
+    CP_BODY_CRASH_BOX_LEFT,
+    CP_BODY_CRASH_BOX_RIGHT,
+    CP_BODY_CROSS_MEMBER_LEFT,
+    CP_BODY_CROSS_MEMBER_RIGHT,
+    CP_BODY_CORNER_LEFT, /* fender and wheel */
+    CP_BODY_CORNER_RIGHT,
+    CP_BODY_ENGINE,
+    CP_BODY_COUNT
+};
+
+/* Crush force along a direction fixed in one body, between a body pushed forward and a body
+ * pushed back, at one common point. */
+typedef struct cp_axial_element {
+    int front;                /* body in front */
+    int rear;                 /* body behind */
+    int axis;                 /* body whose x axis is the direction of compression */
+    cp_vec2 front_point_m;    /* on the front body, its frame */
+    cp_vec2 rear_point_m;     /* on the rear body, its frame: compression = rest - distance */
+    bool force_at_rear_point; /* where the common point is */
+    double rest_m;
+    cp_crush_law law;
+    cp_crush_state state;
+    double damping_n_s_m;
+    double damping_n; /* damping force of the present step, and the rate it came from */
+    double rate_m_s;
+} cp_axial_element;
+
+/* Plastic hinge between two bodies. */
+typedef struct cp_bending_element {
+    int outer;
+    int inner;
+    cp_bending_law law;
+    cp_bending_state state;
+} cp_bending_element;
+
+/* Engine mount: elastic-plastic point-to-point tie with damping. */
+typedef struct cp_tie_element {
+    int member; /* the longitudinal */
+    cp_vec2 member_point_m;
+    cp_vec2 engine_point_m;
+    cp_vec2 plastic_m; /* permanent displacement, engine's frame */
+    double plastic_j;
+    cp_vec2 damping_n;
+    cp_vec2 rate_m_s;
+} cp_tie_element;
+
+enum {
+    CP_AXIAL_COUNT = 8, /* 2 longitudinals, 2 crash boxes, 2 corners, 2 engine-to-firewall */
+    CP_BENDING_COUNT = 4,
+    CP_TIE_COUNT = 2,
+    CP_OUTLINE_COUNT = 6, /* 2 cross member halves, engine, 2 corners, root */
+    CP_HINGE_COUNT = 2
+};
+
+/* A contact outline: which body carries it, where on it, how stiff it is. */
+typedef struct cp_car_outline {
+    int body;
+    cp_vec2 centre_m; /* in the body's frame */
+    double half_length_m;
+    double half_width_m;
+    double radius_m;
+    double stiffness_n_m;
+    double damping_n_s_m;
+} cp_car_outline;
+
+typedef struct cp_car {
+    const cp_vehicle_model *model;
+    dBodyID body[CP_BODY_COUNT];
+    double mass_kg[CP_BODY_COUNT];
+    double inertia_kg_m2[CP_BODY_COUNT];
+    cp_vec2 cog_m; /* undeformed car's centre of gravity in the root's frame */
+    cp_axial_element axial[CP_AXIAL_COUNT];
+    cp_bending_element bending[CP_BENDING_COUNT];
+    cp_tie_element tie[CP_TIE_COUNT];
+    cp_car_outline outline[CP_OUTLINE_COUNT];
+    dJointID hinge[CP_HINGE_COUNT];
+    dJointFeedback hinge_feedback[CP_HINGE_COUNT];
+    cp_vec2 hinge_gap_m[CP_HINGE_COUNT]; /* between its two anchors at the step's beginning */
+    double joint_damping_j;              /* dissipated by dampers so far */
+    double crush_m;                      /* largest shortening bumper to firewall so far */
+} cp_car;
+
+/* Build the car in the world at a state. The world owns bodies and joints. Errors: CP_BAD_INPUT
+ * when masses and inertia do not fit together (naming the field). */
+CP_MUST_CHECK cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model, dWorldID world,
+                                     const cp_body_state *state, cp_error *error);
+
+/* Put all forces of the coming step on the bodies. */
+void cp_car_apply_forces(cp_car *car);
+/* After the step: what the dampers took, how far it is crushed; angular momentum mended where a
+ * hinge's two anchors have drifted apart. */
+void cp_car_after_step(cp_car *car, double time_step_s);
+
+/* Outline number index where it is now. */
+cp_outline cp_car_outline_now(const cp_car *car, int index);
+
+/* Motion of the material point at the undeformed centre of gravity. */
+cp_body_state cp_car_cog_state(const cp_car *car);
+
+double cp_car_kinetic_energy(const cp_car *car);
+double cp_car_elastic_energy(const cp_car *car);
+double cp_car_plastic_energy(const cp_car *car);
+/* Linear momentum, and angular momentum about the world's origin (z). */
+cp_vec2 cp_car_momentum(const cp_car *car, double *angular_kg_m2_s);
+
+/* Plane views of an ODE body. */
+cp_pose cp_body_pose(dBodyID body);
+cp_vec2 cp_body_velocity_at(dBodyID body, cp_vec2 world_m);
+
+#endif

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CRASH_VALIDITY_H
+#define CRASH_VALIDITY_H
+
+#include "crash/crash_configuration.h"
+
+#include <stddef.h>
+
+/* Whether one vehicle's crash lies inside what its model was calibrated for: a set of what is
+ * outside, 0 = inside. X(name, bit, text). */
+#define CP_VALIDITY_REASONS(X)                                                                     \
+    X(CP_OUTSIDE_SPEED, 0, "speed")                                                                \
+    X(CP_OUTSIDE_OFFSET, 1, "offset")                                                              \
+    X(CP_OUTSIDE_ANGLE, 2, "angle")                                                                \
+    X(CP_OUTSIDE_OBLIQUE_VELOCITY, 3, "oblique_velocity")                                          \
+    X(CP_OUTSIDE_CONTACT_SIDE, 4, "contact_side")                                                  \
+    X(CP_OUTSIDE_OPPONENT_STRUCTURE, 5, "opponent_structure")                                      \
+    X(CP_OUTSIDE_MODEL, 6, "model")
+
+enum {
+#define CP_VALIDITY_NAME(name, bit, text) name = 1u << bit,
+    CP_VALIDITY_REASONS(CP_VALIDITY_NAME)
+#undef CP_VALIDITY_NAME
+};
+
+#define CP_VALIDITY_TEXT_SIZE 128
+
+/* Validity of vehicle role (0 or 1): speed by v_eq = closing * m_other / (m_own + m_other) (the
+ * barrier has infinite mass), offset and angle by the calibrated range, oblique velocity beyond
+ * 15 degrees (an assumption, stated as one), side struck other than front, opponent struck other
+ * than on its front, model never calibrated. Offset and angle of role 1 are those seen from it. */
+unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
+                     const cp_crash_configuration *configuration,
+                     const cp_crash_description *description, int role);
+
+/* "inside" or the list of what is outside, "speed,angle". Returns text. */
+const char *cp_validity_text(unsigned outside, char text[CP_VALIDITY_TEXT_SIZE]);
+
+#endif

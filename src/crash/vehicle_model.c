@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "crash/vehicle_model.h"
+
+#include "core/hash.h"
+#include "core/units.h"
+#include "core/yaml_file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+const cp_vehicle_parameter CP_VEHICLE_PARAMETER[] = {
+#define CP_VEHICLE_ROW(field, unit, value, smallest, largest, what)                                \
+    {#field, unit, offsetof(cp_vehicle_model, field), value, smallest, largest, what},
+    CP_VEHICLE_PARAMETERS(CP_VEHICLE_ROW)
+#undef CP_VEHICLE_ROW
+};
+const size_t CP_VEHICLE_PARAMETER_COUNT =
+    sizeof CP_VEHICLE_PARAMETER / sizeof CP_VEHICLE_PARAMETER[0];
+
+cp_vehicle_model cp_vehicle_model_default(void)
+{
+    cp_vehicle_model model = {.name = "default"};
+    for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++)
+        cp_vehicle_model_set(&model, k, CP_VEHICLE_PARAMETER[k].standard);
+    return model;
+}
+
+double cp_vehicle_model_get(const cp_vehicle_model *model, size_t index)
+{
+    double value = 0.0;
+    memcpy(&value, (const char *)model + CP_VEHICLE_PARAMETER[index].offset, sizeof value);
+    return value;
+}
+
+void cp_vehicle_model_set(cp_vehicle_model *model, size_t index, double value)
+{
+    memcpy((char *)model + CP_VEHICLE_PARAMETER[index].offset, &value, sizeof value);
+}
+
+size_t cp_vehicle_parameter_index(const char *name)
+{
+    size_t index = 0;
+    while (index < CP_VEHICLE_PARAMETER_COUNT &&
+           strcmp(CP_VEHICLE_PARAMETER[index].name, name) != 0)
+        index++;
+    return index;
+}
+
+// ---- the file ------------------------------------------------------------------------------
+
+typedef struct yaml_parameter {
+    char *name;
+    char *value;
+    char *unit;
+    char *source;
+    char *min;
+    char *max;
+    char *scatter;
+} yaml_parameter;
+
+typedef struct yaml_calibrated {
+    char *speed_min_km_h;
+    char *speed_max_km_h;
+    char *offset_max_mm;
+    char *angle_max_deg;
+} yaml_calibrated;
+
+typedef struct yaml_vehicle {
+    char *vehicle;
+    char *description;
+    yaml_calibrated *calibrated;
+    yaml_parameter *parameters;
+    unsigned parameters_count;
+} yaml_vehicle;
+
+#define OPTIONAL_TEXT(key, type)                                                                   \
+    CYAML_FIELD_STRING_PTR(#key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, type, key, 0,           \
+                           CYAML_UNLIMITED)
+#define REQUIRED_TEXT(key, type)                                                                   \
+    CYAML_FIELD_STRING_PTR(#key, CYAML_FLAG_POINTER, type, key, 0, CYAML_UNLIMITED)
+
+static const cyaml_schema_field_t PARAMETER_FIELDS[] = {
+    REQUIRED_TEXT(name, yaml_parameter),    REQUIRED_TEXT(value, yaml_parameter),
+    OPTIONAL_TEXT(unit, yaml_parameter),    OPTIONAL_TEXT(source, yaml_parameter),
+    OPTIONAL_TEXT(min, yaml_parameter),     OPTIONAL_TEXT(max, yaml_parameter),
+    OPTIONAL_TEXT(scatter, yaml_parameter), CYAML_FIELD_END};
+
+static const cyaml_schema_value_t PARAMETER_VALUE = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, yaml_parameter, PARAMETER_FIELDS)};
+
+static const cyaml_schema_field_t CALIBRATED_FIELDS[] = {
+    REQUIRED_TEXT(speed_min_km_h, yaml_calibrated), REQUIRED_TEXT(speed_max_km_h, yaml_calibrated),
+    REQUIRED_TEXT(offset_max_mm, yaml_calibrated), REQUIRED_TEXT(angle_max_deg, yaml_calibrated),
+    CYAML_FIELD_END};
+
+static const cyaml_schema_field_t VEHICLE_FIELDS[] = {
+    REQUIRED_TEXT(vehicle, yaml_vehicle), OPTIONAL_TEXT(description, yaml_vehicle),
+    CYAML_FIELD_MAPPING_PTR("calibrated", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_vehicle,
+                            calibrated, CALIBRATED_FIELDS),
+    CYAML_FIELD_SEQUENCE("parameters", CYAML_FLAG_POINTER, yaml_vehicle, parameters,
+                         &PARAMETER_VALUE, 0, CYAML_UNLIMITED),
+    CYAML_FIELD_END};
+
+static const cyaml_schema_value_t VEHICLE_VALUE = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, yaml_vehicle, VEHICLE_FIELDS)};
+
+static cp_status read_calibrated(const cp_yaml_file *file, const yaml_calibrated *calibrated,
+                                 cp_vehicle_model *model, cp_error *error)
+{
+    if (calibrated == NULL)
+        return CP_OK;
+    double speed_min_km_h = 0.0, speed_max_km_h = 0.0, offset_max_mm = 0.0, angle_max_deg = 0.0;
+    cp_status status = cp_yaml_number(file, "calibrated.speed_min_km_h", calibrated->speed_min_km_h,
+                                      0, 300, &speed_min_km_h, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "calibrated.speed_max_km_h", calibrated->speed_max_km_h,
+                                speed_min_km_h, 300, &speed_max_km_h, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "calibrated.offset_max_mm", calibrated->offset_max_mm, 0,
+                                3000, &offset_max_mm, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "calibrated.angle_max_deg", calibrated->angle_max_deg, 0, 90,
+                                &angle_max_deg, error);
+    model->calibrated_speed_min_m_s = cp_m_s_from_km_h(speed_min_km_h);
+    model->calibrated_speed_max_m_s = cp_m_s_from_km_h(speed_max_km_h);
+    model->calibrated_offset_max_m = 1e-3 * offset_max_mm;
+    model->calibrated_angle_max_rad = cp_rad_from_deg(angle_max_deg);
+    return status;
+}
+
+static cp_status read_parameter(const cp_yaml_file *file, const yaml_parameter *entry, size_t row,
+                                bool *given, cp_vehicle_model *model, cp_error *error)
+{
+    char key_path[128];
+    snprintf(key_path, sizeof key_path, "parameters[%zu].name", row);
+    size_t index = cp_vehicle_parameter_index(entry->name);
+    if (index == CP_VEHICLE_PARAMETER_COUNT)
+        return cp_yaml_fail(file, error, key_path, "'%s' is no parameter of the vehicle model",
+                            entry->name);
+    if (given[index])
+        return cp_yaml_fail(file, error, key_path, "'%s' is given twice", entry->name);
+    given[index] = true;
+    const cp_vehicle_parameter *parameter = &CP_VEHICLE_PARAMETER[index];
+    if (entry->unit != NULL && strcmp(entry->unit, parameter->unit) != 0)
+        return cp_yaml_fail(file, error, key_path, "unit must be '%s', found '%s'", parameter->unit,
+                            entry->unit);
+
+    // The file's own bounds must lie within the table's, its value within both.
+    double smallest = parameter->smallest, largest = parameter->largest;
+    double value = parameter->standard, scatter = 0.0;
+    snprintf(key_path, sizeof key_path, "parameters[%zu].min", row);
+    cp_status status =
+        cp_yaml_number(file, key_path, entry->min, smallest, largest, &smallest, error);
+    snprintf(key_path, sizeof key_path, "parameters[%zu].max", row);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, key_path, entry->max, smallest, largest, &largest, error);
+    snprintf(key_path, sizeof key_path, "parameters[%zu].scatter", row);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, key_path, entry->scatter, 0.0, 0.5, &scatter, error);
+    snprintf(key_path, sizeof key_path, "parameters[%zu].value", row);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, key_path, entry->value, smallest, largest, &value, error);
+    if (status != CP_OK)
+        return cp_error_prefix(error, "parameter '%s': ", entry->name);
+    cp_vehicle_model_set(model, index, value);
+    return CP_OK;
+}
+
+cp_status cp_vehicle_model_load(const char *path, cp_vehicle_model *model, cp_error *error)
+{
+    cp_yaml_file file = {0};
+    cp_status status = cp_yaml_load(path, &VEHICLE_VALUE, &file, error);
+    if (status != CP_OK)
+        return status;
+    const yaml_vehicle *vehicle = (const yaml_vehicle *)file.data;
+    *model = cp_vehicle_model_default();
+    if (strlen(vehicle->vehicle) >= sizeof model->name || vehicle->vehicle[0] == '\0')
+        status = cp_yaml_fail(&file, error, "vehicle", "must have 1 to %zu characters",
+                              sizeof model->name - 1);
+    snprintf(model->name, sizeof model->name, "%s", vehicle->vehicle);
+    if (vehicle->description != NULL)
+        snprintf(model->description, sizeof model->description, "%s", vehicle->description);
+    if (status == CP_OK)
+        status = read_calibrated(&file, vehicle->calibrated, model, error);
+
+    bool given[sizeof CP_VEHICLE_PARAMETER / sizeof CP_VEHICLE_PARAMETER[0]] = {false};
+    for (size_t row = 0; status == CP_OK && row < vehicle->parameters_count; row++)
+        status = read_parameter(&file, &vehicle->parameters[row], row, given, model, error);
+    cp_yaml_close(&file);
+    if (status == CP_OK)
+        status = cp_hash_file(path, model->hash, error);
+    if (status != CP_OK)
+        return status;
+    status = cp_vehicle_model_validate(model, error);
+    return status == CP_OK ? CP_OK : cp_error_prefix(error, "%s: ", path);
+}
+
+// ---- validation ----------------------------------------------------------------------------
+
+static cp_status check_ranges(const cp_vehicle_model *model, cp_error *error)
+{
+    for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++) {
+        const cp_vehicle_parameter *parameter = &CP_VEHICLE_PARAMETER[k];
+        double value = cp_vehicle_model_get(model, k);
+        if (!(value >= parameter->smallest && value <= parameter->largest))
+            return cp_fail(error, CP_BAD_INPUT, "%s must be between %g and %g %s, found %g",
+                           parameter->name, parameter->smallest, parameter->largest,
+                           parameter->unit, value);
+    }
+    return CP_OK;
+}
+
+static cp_status check_collapse(cp_error *error, const char *element, double begin_m, double end_m,
+                                double length_m)
+{
+    if (end_m <= begin_m)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "%s_collapse_end_m must be above %s_collapse_begin_m = %g, found %g",
+                       element, element, begin_m, end_m);
+    if (end_m > length_m)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "%s_collapse_end_m must not exceed the %g m the element is long, found %g",
+                       element, length_m, end_m);
+    return CP_OK;
+}
+
+cp_status cp_vehicle_model_validate(const cp_vehicle_model *m, cp_error *error)
+{
+    cp_status status = check_ranges(m, error);
+    if (status != CP_OK)
+        return status;
+
+    // Lengths: what collapses fits its member, the engine bay holds an engine.
+    double front_length_m =
+        m->cross_member_depth_m + m->crash_box_length_m + m->longitudinal_length_m;
+    double corner_length_m = front_length_m - m->corner_gap_m;
+    double engine_length_m = m->crash_box_length_m + m->longitudinal_length_m -
+                             m->engine_gap_front_m - m->engine_gap_firewall_m;
+    if (engine_length_m < 0.1)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "engine_gap_front_m + engine_gap_firewall_m leave %g m for the engine "
+                       "between cross member and firewall, at least 0.1 are needed",
+                       engine_length_m);
+    if (front_length_m >= m->cg_to_front_m)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "cg_to_front_m must exceed the front structure's length %g, found %g",
+                       front_length_m, m->cg_to_front_m);
+    if (m->cg_to_front_m >= m->length_m)
+        return cp_fail(error, CP_BAD_INPUT, "cg_to_front_m must be below length_m = %g, found %g",
+                       m->length_m, m->cg_to_front_m);
+    if (m->cross_member_half_width_m > 0.5 * m->width_m)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "cross_member_half_width_m must not exceed half the width %g, found %g",
+                       0.5 * m->width_m, m->cross_member_half_width_m);
+    if (m->longitudinal_y_m >= m->cross_member_half_width_m)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "longitudinal_y_m must be below cross_member_half_width_m = %g, found %g",
+                       m->cross_member_half_width_m, m->longitudinal_y_m);
+    if (2.0 * m->corner_radius_m > m->cross_member_depth_m)
+        return cp_fail(
+            error, CP_BAD_INPUT,
+            "corner_radius_m must not exceed half of cross_member_depth_m = %g, found %g",
+            m->cross_member_depth_m, m->corner_radius_m);
+    status = check_collapse(error, "longitudinal", m->longitudinal_collapse_begin_m,
+                            m->longitudinal_collapse_end_m, m->longitudinal_length_m);
+    if (status == CP_OK)
+        status = check_collapse(error, "crash_box", m->crash_box_collapse_begin_m,
+                                m->crash_box_collapse_end_m, m->crash_box_length_m);
+    if (status == CP_OK)
+        status = check_collapse(error, "corner", m->corner_collapse_begin_m,
+                                m->corner_collapse_end_m, corner_length_m);
+    if (status != CP_OK)
+        return status;
+
+    // Masses: most of the car lies behind the firewall.
+    double front_mass_kg =
+        m->engine_mass_kg + 2.0 * (m->longitudinal_mass_kg + m->crash_box_mass_kg +
+                                   m->cross_member_mass_kg + m->corner_mass_kg);
+    if (front_mass_kg > 0.6 * m->mass_kg)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "mass_kg must leave at least 40 %% behind the firewall; the front parts "
+                       "weigh %g of %g kg",
+                       front_mass_kg, m->mass_kg);
+    return CP_OK;
+}

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CRASH_VEHICLE_MODEL_H
+#define CRASH_VEHICLE_MODEL_H
+
+#include "core/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* The parameters of one car of the multibody surrogate. Constant once loaded and validated; any
+ * number of simulations may share it. Lengths are of the undeformed car, x forward from the centre
+ * of gravity or as named. X(field, unit, default, smallest, largest, what it is). The defaults are
+ * a mid-size car (first parameter set, not fitted). */
+#define CP_VEHICLE_PARAMETERS(X)                                                                   \
+    X(mass_kg, "kg", 1640, 500, 5000, "whole car as it crashes, occupants included")               \
+    X(yaw_inertia_kg_m2, "kg m2", 2700, 500, 12000, "whole car about its centre of gravity")       \
+    X(length_m, "m", 4.86, 2.5, 8.0, "bumper to bumper")                                           \
+    X(width_m, "m", 1.85, 1.3, 2.6, "without mirrors")                                             \
+    X(cg_to_front_m, "m", 2.05, 0.8, 4.5, "centre of gravity to front bumper")                     \
+    X(longitudinal_y_m, "m", 0.47, 0.3, 0.7,                                                       \
+      "middle of a longitudinal member from the centre line")                                      \
+    X(longitudinal_length_m, "m", 0.62, 0.3, 1.0, "longitudinal member, hinge to crash box")       \
+    X(longitudinal_mass_kg, "kg", 22, 10, 60, "one longitudinal member")                           \
+    X(longitudinal_collapse_begin_m, "m", 0.02, 0.005, 0.1, "compression where collapse begins")   \
+    X(longitudinal_collapse_begin_kn, "kN", 150, 10, 800, "force where collapse begins")           \
+    X(longitudinal_collapse_end_m, "m", 0.5, 0.1, 0.9,                                             \
+      "compression where nothing is left to collapse")                                             \
+    X(longitudinal_collapse_end_kn, "kN", 260, 10, 1500,                                           \
+      "force where nothing is left to collapse")                                                   \
+    X(longitudinal_bending_kn_m, "kN m", 20, 0.5, 200, "bending moment where its foot yields")     \
+    X(longitudinal_bending_begin_rad, "rad", 0.04, 0.005, 0.3, "rotation where its foot yields")   \
+    X(crash_box_length_m, "m", 0.2, 0.08, 0.35, "one crash box")                                   \
+    X(crash_box_mass_kg, "kg", 8, 2, 30, "one crash box with what is bolted to it")                \
+    X(crash_box_collapse_begin_m, "m", 0.015, 0.005, 0.1, "compression where collapse begins")     \
+    X(crash_box_collapse_begin_kn, "kN", 60, 5, 500, "force where collapse begins")                \
+    X(crash_box_collapse_end_m, "m", 0.16, 0.05, 0.35, "compression where nothing is left")        \
+    X(crash_box_collapse_end_kn, "kN", 110, 5, 800, "force where nothing is left")                 \
+    X(cross_member_half_width_m, "m", 0.75, 0.45, 1.2, "middle to tip of the cross member")        \
+    X(cross_member_depth_m, "m", 0.12, 0.06, 0.25, "cross member, front to back")                  \
+    X(cross_member_mass_kg, "kg", 10, 3, 40, "one half of the cross member with bumper")           \
+    X(cross_member_bending_kn_m, "kN m", 6, 0.1, 100,                                              \
+      "bending moment where a half yields at its box")                                             \
+    X(cross_member_bending_begin_rad, "rad", 0.05, 0.005, 0.3, "rotation where a half yields")     \
+    X(engine_mass_kg, "kg", 260, 50, 600, "engine, gearbox and what moves with them")              \
+    X(engine_gap_front_m, "m", 0.32, 0.05, 0.8, "cross member's back to engine's front")           \
+    X(engine_gap_firewall_m, "m", 0.14, 0.02, 0.5, "engine's back to firewall")                    \
+    X(engine_width_m, "m", 0.75, 0.3, 1.2, "across the car")                                       \
+    X(engine_mount_kn_m, "kN/m", 1500, 10, 20000, "stiffness of one of its two ties")              \
+    X(engine_mount_yield_kn, "kN", 30, 1, 300, "force where a tie yields")                         \
+    X(engine_mount_damping_kn_s_m, "kN s/m", 3, 0, 50, "damping of one tie")                       \
+    X(firewall_stiffness_kn_m, "kN/m", 4000, 100, 50000, "engine against firewall")                \
+    X(corner_gap_m, "m", 0.3, 0.0, 0.8,                                                            \
+      "bumper front to front of the outboard corner (fender, wheel)")                              \
+    X(corner_width_m, "m", 0.3, 0.1, 0.6, "outboard corner, across the car from its side inwards") \
+    X(corner_mass_kg, "kg", 30, 5, 80, "one outboard corner with wheel")                           \
+    X(corner_collapse_begin_m, "m", 0.05, 0.005, 0.3, "compression where collapse begins")         \
+    X(corner_collapse_begin_kn, "kN", 40, 1, 400, "force where collapse begins")                   \
+    X(corner_collapse_end_m, "m", 0.5, 0.1, 0.9, "compression where nothing is left")              \
+    X(corner_collapse_end_kn, "kN", 90, 1, 800, "force where nothing is left")                     \
+    X(unload_factor_1, "1", 3, 1, 30,                                                              \
+      "unloading stiffness over loading stiffness of every element")                               \
+    X(stop_stiffness_kn_m, "kN/m", 4000, 200, 50000,                                               \
+      "every element beyond the end of its collapse")                                              \
+    X(member_damping_kn_s_m, "kN s/m", 1, 0, 10, "along every prismatic joint")                    \
+    X(contact_stiffness_kn_m, "kN/m", 8000, 1000, 50000, "front outlines in contact")              \
+    X(contact_damping_1, "1", 0.3, 0, 1,                                                           \
+      "share of critical damping of front contacts at a cross member half")                        \
+    X(body_stiffness_kn_m, "kN/m", 700, 50, 20000,                                                 \
+      "sides, rear and firewall as struck by another")                                             \
+    X(body_damping_1, "1", 0.7, 0, 3,                                                              \
+      "share of critical damping of body contacts at half the car's mass")                         \
+    X(corner_radius_m, "m", 0.06, 0.01, 0.3, "rounding of the contact outlines")                   \
+    X(friction_1, "1", 0.45, 0, 1.5, "Coulomb friction against barrier or opponent")
+
+typedef struct cp_vehicle_model {
+    char name[64]; /* of the file: "honda_accord_2014" */
+    char description[256];
+    char hash[65]; /* SHA-256 of the file it was loaded from; "" for the default */
+    /* Range the model was calibrated in; outside it results are marked. Equal bounds of speed
+     * (0, 0) mean: never calibrated. */
+    double calibrated_speed_min_m_s;
+    double calibrated_speed_max_m_s;
+    double calibrated_offset_max_m; /* to either side */
+    double calibrated_angle_max_rad;
+#define CP_VEHICLE_FIELD(field, unit, value, smallest, largest, what) double field;
+    CP_VEHICLE_PARAMETERS(CP_VEHICLE_FIELD)
+#undef CP_VEHICLE_FIELD
+} cp_vehicle_model;
+
+/* One row a parameter, in the order above: name as in the file, place in the struct, range. */
+typedef struct cp_vehicle_parameter {
+    const char *name;
+    const char *unit;
+    size_t offset;
+    double standard;
+    double smallest;
+    double largest;
+    const char *what;
+} cp_vehicle_parameter;
+
+extern const cp_vehicle_parameter CP_VEHICLE_PARAMETER[];
+extern const size_t CP_VEHICLE_PARAMETER_COUNT;
+
+cp_vehicle_model cp_vehicle_model_default(void);
+
+/* Value of parameter number index. */
+double cp_vehicle_model_get(const cp_vehicle_model *model, size_t index);
+void cp_vehicle_model_set(cp_vehicle_model *model, size_t index, double value);
+/* Index of a parameter by name, or CP_VEHICLE_PARAMETER_COUNT. */
+size_t cp_vehicle_parameter_index(const char *name);
+
+/* Read a vehicle YAML file (format: db/vehicles/README.md) and validate it. Errors: CP_BAD_INPUT
+ * with file, line and field. */
+CP_MUST_CHECK cp_status cp_vehicle_model_load(const char *path, cp_vehicle_model *model,
+                                              cp_error *error);
+
+/* Ranges of every field and what must hold between fields (lengths add up, masses leave a root,
+ * stiffness is stable at the time step). Errors: CP_BAD_INPUT naming the field. */
+CP_MUST_CHECK cp_status cp_vehicle_model_validate(const cp_vehicle_model *model, cp_error *error);
+
+#endif

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+// cmocka wants the four above first.
+#include <cmocka.h>
+
+#include "builders/near.h"
+
+#include "crash/vehicle_model.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// Write text to a temporary file, load it, remove it.
+static cp_status load_text(const char *text, cp_vehicle_model *model, cp_error *error)
+{
+    char path[] = "/tmp/vehicle_XXXXXX";
+    int descriptor = mkstemp(path);
+    assert_true(descriptor >= 0);
+    assert_int_equal(write(descriptor, text, strlen(text)), (ssize_t)strlen(text));
+    close(descriptor);
+    cp_status status = cp_vehicle_model_load(path, model, error);
+    unlink(path);
+    return status;
+}
+
+static void expect_refusal(const char *text, const char *place, const char *words)
+{
+    cp_vehicle_model model;
+    cp_error error = {0};
+    assert_int_equal(load_text(text, &model, &error), CP_BAD_INPUT);
+    if (strstr(error.text, place) == NULL || strstr(error.text, words) == NULL)
+        fail_msg("expected '%s' and '%s' in: %s", place, words, error.text);
+}
+
+static void the_default_is_valid(void **state)
+{
+    (void)state;
+    cp_vehicle_model model = cp_vehicle_model_default();
+    cp_error error = {0};
+    if (cp_vehicle_model_validate(&model, &error) != CP_OK)
+        fail_msg("%s", error.text);
+}
+
+static void a_file_sets_what_it_names(void **state)
+{
+    (void)state;
+    cp_vehicle_model model;
+    cp_error error = {0};
+    cp_status status = load_text("vehicle: test_car\n"
+                                 "calibrated: {speed_min_km_h: 25, speed_max_km_h: 56, "
+                                 "offset_max_mm: 1050, angle_max_deg: 30}\n"
+                                 "parameters:\n"
+                                 "  - {name: mass_kg, value: 1500, unit: kg, source: scale}\n"
+                                 "  - {name: friction_1, value: 0.3, scatter: 0.1}\n",
+                                 &model, &error);
+    if (status != CP_OK)
+        fail_msg("%s", error.text);
+    assert_string_equal(model.name, "test_car");
+    assert_near(model.mass_kg, 1500.0, 0.0);
+    assert_near(model.friction_1, 0.3, 0.0);
+    assert_near(model.width_m, cp_vehicle_model_default().width_m, 0.0);
+    assert_near(model.calibrated_speed_max_m_s, 56.0 / 3.6, 1e-12);
+    assert_near(model.calibrated_offset_max_m, 1.05, 1e-12);
+    assert_int_equal(strlen(model.hash), 64);
+}
+
+static void every_error_names_line_and_field(void **state)
+{
+    (void)state;
+    expect_refusal("", ":", "empty");
+    expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: heavy}\n",
+                   ":3:", "must be a number, found 'heavy'");
+    expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: nan}\n", ":3:", "'nan'");
+    expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: 20}\n",
+                   ":3:", "between 500 and 5000, found 20");
+    expect_refusal("vehicle: x\nparameters:\n  - {name: mess_kg, value: 20}\n", ":3:", "mess_kg");
+    expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: 1500}\n"
+                   "  - {name: mass_kg, value: 1600}\n",
+                   ":4:", "given twice");
+    expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: 1500, unit: t}\n",
+                   ":3:", "unit must be 'kg'");
+    expect_refusal("vehicle: x\nwheels: 4\nparameters: []\n", ":2", "wheels");
+    expect_refusal("vehicle: x\nparameters: [\n", ":", "");
+}
+
+static void fields_must_fit_each_other(void **state)
+{
+    (void)state;
+    expect_refusal("vehicle: x\nparameters:\n  - {name: crash_box_collapse_end_m, value: 0.3}\n",
+                   "", "crash_box_collapse_end_m must not exceed");
+    expect_refusal("vehicle: x\nparameters:\n  - {name: engine_gap_front_m, value: 0.75}\n", "",
+                   "engine_gap_front_m");
+    expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: 600}\n", "", "mass_kg");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_default_is_valid),
+        cmocka_unit_test(a_file_sets_what_it_names),
+        cmocka_unit_test(every_error_names_line_and_field),
+        cmocka_unit_test(fields_must_fit_each_other),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -111,7 +111,7 @@ cp_status cp_crash_configuration_from_description(
 {
     *configuration =
         (cp_crash_configuration){.against_barrier = model_b == NULL,
-                                 .barrier = barrier != NULL ? *barrier : cp_barrier_default()};
+                                 .barrier = barrier != NULL ? *barrier : model_a->barrier};
     cp_status status = cp_barrier_validate(&configuration->barrier, error);
     if (status != CP_OK)
         return status;

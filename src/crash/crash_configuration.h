@@ -33,19 +33,6 @@ typedef struct cp_body_state {
     double yaw_rate_rad_s;
 } cp_body_state;
 
-/* Rigid barrier with rounded corners. Its pose is given relative to the car as lateral offset and
- * angle; width, depth, corner radius and the point about which the angle turns it are properties
- * of the test set-up. */
-typedef struct cp_barrier {
-    double width_m;         /* default 2.0 */
-    double depth_m;         /* default 1.5 */
-    double corner_radius_m; /* default 0.15 */
-    double pivot_m;         /* the angle turns about a point this far before the face, default 0 */
-    double friction_1;      /* unused when < 0: the car's own */
-} cp_barrier;
-
-cp_barrier cp_barrier_default(void);
-
 /* The full relative state the surrogate starts from. */
 typedef struct cp_crash_configuration {
     bool against_barrier;
@@ -67,8 +54,8 @@ typedef struct cp_crash_description {
 
 /* Car a drives along +x from the origin of the plane; b (model_b, or the barrier when NULL) is
  * placed by offset and angle and both are moved along their headings until they just touch.
- * barrier may be NULL (default). Speeds >= 0, not both 0. Errors: CP_BAD_INPUT when the two
- * miss each other. */
+ * barrier may be NULL: that of a's reference study. Speeds >= 0, not both 0. Errors: CP_BAD_INPUT
+ * when the two miss each other. */
 CP_MUST_CHECK cp_status cp_crash_configuration_from_description(
     const cp_vehicle_model *model_a, const cp_vehicle_model *model_b, const cp_barrier *barrier,
     double speed_a_m_s, double speed_b_m_s, double lateral_offset_m, double angle_rad,

@@ -437,8 +437,16 @@ static void begin_record(crash_run *run)
     result->momentum_start = momentum_now(run);
 }
 
-static cp_status check_options(const cp_crash_options *options, cp_error *error)
+static cp_status check_options(const cp_crash_options *options, const cp_vehicle_model *models[2],
+                               cp_error *error)
 {
+    for (int k = 0; k < 2 && models[k] != NULL; k++) {
+        double largest_s = cp_vehicle_model_largest_step(models[k], NULL);
+        if (options->time_step_s > largest_s)
+            return cp_fail(error, CP_BAD_INPUT,
+                           "time_step_s must be at most %g for vehicle %s, found %g", largest_s,
+                           models[k]->name, options->time_step_s);
+    }
     if (!(options->time_step_s >= 1e-6 && options->time_step_s <= 0.002))
         return cp_fail(error, CP_BAD_INPUT, "time_step_s must be between 1e-6 and 0.002, found %g",
                        options->time_step_s);
@@ -454,7 +462,8 @@ cp_status cp_crash_simulate(const cp_vehicle_model *model_a, const cp_vehicle_mo
                             cp_error *error)
 {
     *result = (cp_crash_result){.vehicle_count = model_b != NULL ? 2 : 1};
-    cp_status status = check_options(options, error);
+    const cp_vehicle_model *models[2] = {model_a, model_b};
+    cp_status status = check_options(options, models, error);
     if (status != CP_OK)
         return status;
     crash_run *run = calloc(1, sizeof *run);
@@ -463,7 +472,6 @@ cp_status cp_crash_simulate(const cp_vehicle_model *model_a, const cp_vehicle_mo
     run->options = options;
     run->result = result;
     run->car_count = result->vehicle_count;
-    const cp_vehicle_model *models[2] = {model_a, model_b};
 
     double longest_s = fmax(options->duration_s, options->longest_duration_s);
     size_t samples = (size_t)llround(longest_s / options->time_step_s) + 1;

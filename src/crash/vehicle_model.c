@@ -5,6 +5,7 @@
 #include "core/units.h"
 #include "core/yaml_file.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,7 +20,7 @@ const size_t CP_VEHICLE_PARAMETER_COUNT =
 
 cp_vehicle_model cp_vehicle_model_default(void)
 {
-    cp_vehicle_model model = {.name = "default"};
+    cp_vehicle_model model = {.name = "default", .barrier = cp_barrier_default()};
     for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++)
         cp_vehicle_model_set(&model, k, CP_VEHICLE_PARAMETER[k].standard);
     return model;
@@ -65,10 +66,19 @@ typedef struct yaml_calibrated {
     char *angle_max_deg;
 } yaml_calibrated;
 
+typedef struct yaml_barrier {
+    char *width_m;
+    char *depth_m;
+    char *corner_radius_m;
+    char *pivot_m;
+    char *source;
+} yaml_barrier;
+
 typedef struct yaml_vehicle {
     char *vehicle;
     char *description;
     yaml_calibrated *calibrated;
+    yaml_barrier *barrier;
     yaml_parameter *parameters;
     unsigned parameters_count;
 } yaml_vehicle;
@@ -93,10 +103,18 @@ static const cyaml_schema_field_t CALIBRATED_FIELDS[] = {
     REQUIRED_TEXT(offset_max_mm, yaml_calibrated), REQUIRED_TEXT(angle_max_deg, yaml_calibrated),
     CYAML_FIELD_END};
 
+static const cyaml_schema_field_t BARRIER_FIELDS[] = {
+    REQUIRED_TEXT(width_m, yaml_barrier),         REQUIRED_TEXT(depth_m, yaml_barrier),
+    REQUIRED_TEXT(corner_radius_m, yaml_barrier), REQUIRED_TEXT(pivot_m, yaml_barrier),
+    OPTIONAL_TEXT(source, yaml_barrier),          CYAML_FIELD_END};
+
 static const cyaml_schema_field_t VEHICLE_FIELDS[] = {
-    REQUIRED_TEXT(vehicle, yaml_vehicle), OPTIONAL_TEXT(description, yaml_vehicle),
+    REQUIRED_TEXT(vehicle, yaml_vehicle),
+    OPTIONAL_TEXT(description, yaml_vehicle),
     CYAML_FIELD_MAPPING_PTR("calibrated", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_vehicle,
                             calibrated, CALIBRATED_FIELDS),
+    CYAML_FIELD_MAPPING_PTR("barrier", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_vehicle,
+                            barrier, BARRIER_FIELDS),
     CYAML_FIELD_SEQUENCE("parameters", CYAML_FLAG_POINTER, yaml_vehicle, parameters,
                          &PARAMETER_VALUE, 0, CYAML_UNLIMITED),
     CYAML_FIELD_END};
@@ -128,6 +146,25 @@ static cp_status read_calibrated(const cp_yaml_file *file, const yaml_calibrated
     return status;
 }
 
+static cp_status read_barrier(const cp_yaml_file *file, const yaml_barrier *given,
+                              cp_barrier *barrier, cp_error *error)
+{
+    if (given == NULL)
+        return CP_OK;
+    cp_status status =
+        cp_yaml_number(file, "barrier.width_m", given->width_m, 0.3, 20, &barrier->width_m, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "barrier.depth_m", given->depth_m, 0.3, 20, &barrier->depth_m,
+                                error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "barrier.corner_radius_m", given->corner_radius_m, 0, 10,
+                                &barrier->corner_radius_m, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "barrier.pivot_m", given->pivot_m, -3, 3, &barrier->pivot_m,
+                                error);
+    return status == CP_OK ? cp_barrier_validate(barrier, error) : status;
+}
+
 static cp_status read_parameter(const cp_yaml_file *file, const yaml_parameter *entry, size_t row,
                                 bool *given, cp_vehicle_model *model, cp_error *error)
 {
@@ -147,7 +184,7 @@ static cp_status read_parameter(const cp_yaml_file *file, const yaml_parameter *
 
     // The file's own bounds must lie within the table's, its value within both.
     double smallest = parameter->smallest, largest = parameter->largest;
-    double value = parameter->standard, scatter = 0.0;
+    double value = parameter->standard;
     snprintf(key_path, sizeof key_path, "parameters[%zu].min", row);
     cp_status status =
         cp_yaml_number(file, key_path, entry->min, smallest, largest, &smallest, error);
@@ -156,7 +193,8 @@ static cp_status read_parameter(const cp_yaml_file *file, const yaml_parameter *
         status = cp_yaml_number(file, key_path, entry->max, smallest, largest, &largest, error);
     snprintf(key_path, sizeof key_path, "parameters[%zu].scatter", row);
     if (status == CP_OK)
-        status = cp_yaml_number(file, key_path, entry->scatter, 0.0, 0.5, &scatter, error);
+        status = cp_yaml_number(file, key_path, entry->scatter, 0.0, 0.5, &model->scatter_1[index],
+                                error);
     snprintf(key_path, sizeof key_path, "parameters[%zu].value", row);
     if (status == CP_OK)
         status = cp_yaml_number(file, key_path, entry->value, smallest, largest, &value, error);
@@ -182,8 +220,10 @@ cp_status cp_vehicle_model_load(const char *path, cp_vehicle_model *model, cp_er
         snprintf(model->description, sizeof model->description, "%s", vehicle->description);
     if (status == CP_OK)
         status = read_calibrated(&file, vehicle->calibrated, model, error);
+    if (status == CP_OK)
+        status = read_barrier(&file, vehicle->barrier, &model->barrier, error);
 
-    bool given[sizeof CP_VEHICLE_PARAMETER / sizeof CP_VEHICLE_PARAMETER[0]] = {false};
+    bool given[CP_VEHICLE_PARAMETER_TOTAL] = {false};
     for (size_t row = 0; status == CP_OK && row < vehicle->parameters_count; row++)
         status = read_parameter(&file, &vehicle->parameters[row], row, given, model, error);
     cp_yaml_close(&file);
@@ -222,6 +262,54 @@ static cp_status check_collapse(cp_error *error, const char *element, double beg
                        "%s_collapse_end_m must not exceed the %g m the element is long, found %g",
                        element, length_m, end_m);
     return CP_OK;
+}
+
+// Steepest slope of a crush element: unloading, or the stop.
+static double steepest_n_m(const cp_vehicle_model *m, double begin_m, double begin_kn)
+{
+    return fmax(m->unload_factor_1 * 1e3 * begin_kn / begin_m, 1e3 * m->stop_stiffness_kn_m);
+}
+
+static double in_parallel(double one, double other)
+{
+    return one * other / (one + other);
+}
+
+double cp_vehicle_model_largest_step(const cp_vehicle_model *m, const char **element)
+{
+    // Square of the fastest oscillation of every element between the masses it couples. A cross
+    // member half on its two contact points rocks at 6 k / m.
+    double front_kg = m->crash_box_mass_kg + m->cross_member_mass_kg;
+    double root_kg = 0.4 * m->mass_kg;
+    const struct {
+        const char *name;
+        double omega_square;
+    } ELEMENTS[] = {
+        {"crash box (unload_factor_1 * crash_box_collapse_begin_kn / crash_box_collapse_begin_m)",
+         steepest_n_m(m, m->crash_box_collapse_begin_m, m->crash_box_collapse_begin_kn) /
+             in_parallel(front_kg, m->longitudinal_mass_kg)},
+        {"longitudinal (unload_factor_1 * longitudinal_collapse_begin_kn / "
+         "longitudinal_collapse_begin_m)",
+         steepest_n_m(m, m->longitudinal_collapse_begin_m, m->longitudinal_collapse_begin_kn) /
+             in_parallel(front_kg + m->longitudinal_mass_kg, root_kg)},
+        {"corner (unload_factor_1 * corner_collapse_begin_kn / corner_collapse_begin_m)",
+         steepest_n_m(m, m->corner_collapse_begin_m, m->corner_collapse_begin_kn) /
+             in_parallel(m->corner_mass_kg, root_kg)},
+        {"firewall (unload_factor_1 * firewall_stiffness_kn_m)",
+         steepest_n_m(m, 1.0, m->firewall_stiffness_kn_m) /
+             in_parallel(m->engine_mass_kg, root_kg)},
+        {"contact (contact_stiffness_kn_m)",
+         6e3 * m->contact_stiffness_kn_m / m->cross_member_mass_kg},
+    };
+    double fastest = 0.0;
+    for (size_t k = 0; k < sizeof ELEMENTS / sizeof *ELEMENTS; k++) {
+        if (ELEMENTS[k].omega_square <= fastest)
+            continue;
+        fastest = ELEMENTS[k].omega_square;
+        if (element != NULL)
+            *element = ELEMENTS[k].name;
+    }
+    return 1.2 / sqrt(fastest);
 }
 
 cp_status cp_vehicle_model_validate(const cp_vehicle_model *m, cp_error *error)
@@ -281,5 +369,14 @@ cp_status cp_vehicle_model_validate(const cp_vehicle_model *m, cp_error *error)
                        "mass_kg must leave at least 40 %% behind the firewall; the front parts "
                        "weigh %g of %g kg",
                        front_mass_kg, m->mass_kg);
+
+    // Stiffness: the standard time step must do.
+    const char *element = NULL;
+    double largest_s = cp_vehicle_model_largest_step(m, &element);
+    if (largest_s < 0.0005)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "%s is so stiff that the time step would have to be below %.3f ms, 0.5 ms "
+                       "must do",
+                       element, 1e3 * largest_s);
     return CP_OK;
 }

@@ -3,6 +3,7 @@
 #define CRASH_VEHICLE_MODEL_H
 
 #include "core/error.h"
+#include "crash/barrier.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -72,6 +73,13 @@
     X(corner_radius_m, "m", 0.06, 0.01, 0.3, "rounding of the contact outlines")                   \
     X(friction_1, "1", 0.45, 0, 1.5, "Coulomb friction against barrier or opponent")
 
+/* Number of parameters. */
+enum {
+#define CP_VEHICLE_COUNT_ONE(field, unit, value, smallest, largest, what) +1
+    CP_VEHICLE_PARAMETER_TOTAL = 0 CP_VEHICLE_PARAMETERS(CP_VEHICLE_COUNT_ONE)
+#undef CP_VEHICLE_COUNT_ONE
+};
+
 typedef struct cp_vehicle_model {
     char name[64]; /* of the file: "honda_accord_2014" */
     char description[256];
@@ -82,6 +90,9 @@ typedef struct cp_vehicle_model {
     double calibrated_speed_max_m_s;
     double calibrated_offset_max_m; /* to either side */
     double calibrated_angle_max_rad;
+    cp_barrier barrier; /* of the study it was calibrated against */
+    /* Relative standard deviation of each parameter, 0 = certain; in the order of the table. */
+    double scatter_1[CP_VEHICLE_PARAMETER_TOTAL];
 #define CP_VEHICLE_FIELD(field, unit, value, smallest, largest, what) double field;
     CP_VEHICLE_PARAMETERS(CP_VEHICLE_FIELD)
 #undef CP_VEHICLE_FIELD
@@ -114,8 +125,12 @@ size_t cp_vehicle_parameter_index(const char *name);
 CP_MUST_CHECK cp_status cp_vehicle_model_load(const char *path, cp_vehicle_model *model,
                                               cp_error *error);
 
+/* The largest time step the explicit force elements of the model stand: their fastest oscillation
+ * turns 1.2 rad in it. element (may be NULL) receives what sets it, static text. */
+double cp_vehicle_model_largest_step(const cp_vehicle_model *model, const char **element);
+
 /* Ranges of every field and what must hold between fields (lengths add up, masses leave a root,
- * stiffness is stable at the time step). Errors: CP_BAD_INPUT naming the field. */
+ * stiffness is stable at a time step of 0.5 ms). Errors: CP_BAD_INPUT naming the field. */
 CP_MUST_CHECK cp_status cp_vehicle_model_validate(const cp_vehicle_model *model, cp_error *error);
 
 #endif

@@ -14,8 +14,8 @@ typedef struct drive {
     double speed_m_s;
     double acceleration_m_s2;
     double yaw_rate_rad_s;
-    double length_m; /* 0: 4.5 */
-    double width_m;  /* 0: 1.8 */
+    double length_m;   /* 0: 4.5 */
+    double width_m;    /* 0: 1.8 */
     double inserted_s; /* on the road from this time on; 0: always */
 } drive;
 

@@ -6,7 +6,7 @@
 // cmocka wants the four above first.
 #include <cmocka.h>
 
-#include "builders/near.h"
+#include "builders/assert_near.h"
 
 #include "builders/crash_builder.h"
 #include "crash/contact.h"

@@ -6,7 +6,7 @@
 // cmocka wants the four above first.
 #include <cmocka.h>
 
-#include "builders/near.h"
+#include "builders/assert_near.h"
 
 #include "crash/crush_element.h"
 

@@ -1,0 +1,205 @@
+-- SPDX-License-Identifier: GPL-3.0-or-later
+-- Views for everyone who asks the database. Only finished replications have crashes, so no view
+-- over crashes needs to look at the status. Every crash has one row of role a and one of role b,
+-- and a is struck on its front in every frontal crash.
+
+-- One row a confirmed crash, with names in place of ids.
+DROP VIEW IF EXISTS crash_list;
+CREATE VIEW crash_list AS
+SELECT s.name AS scenario, v.name AS variant, r.number AS replication, r.seed AS seed, c.*,
+       c.crash_type LIKE 'front-%' AS frontal
+FROM crash AS c
+JOIN replication AS r ON r.id = c.replication_id
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = r.variant_id;
+
+-- One row a frontally struck vehicle: the observation unit of OLC distributions. censored = 1: its
+-- OLC lies below every value.
+DROP VIEW IF EXISTS frontal_vehicle;
+CREATE VIEW frontal_vehicle AS
+SELECT s.name AS scenario, v.name AS variant, r.number AS replication, r.seed AS seed,
+       r.id AS replication_id, c.time_s AS time_s, c.closing_speed_m_s AS closing_speed_m_s,
+       c.lateral_offset_m AS lateral_offset_m, c.angle_rad AS angle_rad,
+       c.overlap_1 AS overlap_1, cv.*,
+       cv.olc_status IN ('no_deceleration', 'beyond_0_5_s') AS censored
+FROM crash_vehicle AS cv
+JOIN crash AS c ON c.id = cv.crash_id
+JOIN replication AS r ON r.id = c.replication_id
+JOIN scenario AS s ON s.id = cv.scenario_id
+JOIN variant AS v ON v.id = cv.variant_id
+WHERE cv.frontal = 1;
+
+-- OLC over the frontally struck vehicles of each variant. The median counts left-censored vehicles
+-- below every value; NULL when it falls among them (then it is below the smallest value) or when
+-- there is no vehicle. share_inside_validity: of the frontal vehicles.
+DROP VIEW IF EXISTS olc_by_variant;
+CREATE VIEW olc_by_variant AS
+WITH ordered AS (
+    SELECT variant_id, olc_g,
+           row_number() OVER (PARTITION BY variant_id ORDER BY olc_g) AS place,
+           count(*) OVER (PARTITION BY variant_id ORDER BY olc_g
+               ROWS BETWEEN UNBOUNDED PRECEDING AND UNBOUNDED FOLLOWING) AS n
+    FROM crash_vehicle
+    WHERE olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')
+), median AS (
+    -- the middle one or the mean of the two in the middle; no value if either is censored
+    SELECT variant_id, CASE WHEN count(olc_g) = count(*) THEN avg(olc_g) END AS olc_median_g
+    FROM ordered
+    WHERE place IN ((n + 1) / 2, n / 2 + 1)
+    GROUP BY variant_id
+), vehicles AS (
+    SELECT variant_id,
+           sum(role = 'a') AS crashes,
+           sum(role = 'a' AND frontal = 1) AS frontal_crashes,
+           sum(frontal) AS frontal_vehicles,
+           sum(frontal = 1 AND olc_status IN ('no_deceleration', 'beyond_0_5_s')) AS censored,
+           sum(frontal = 1 AND olc_status = 'simulation_failed') AS simulation_failed,
+           sum(frontal = 1 AND validity = 'inside') AS inside_validity,
+           avg(CASE WHEN frontal = 1 THEN olc_g END) AS olc_mean_g,
+           min(CASE WHEN frontal = 1 THEN olc_g END) AS olc_min_g,
+           max(CASE WHEN frontal = 1 THEN olc_g END) AS olc_max_g
+    FROM crash_vehicle
+    GROUP BY variant_id
+)
+SELECT v.name AS variant, v.id AS variant_id, v.is_baseline AS is_baseline,
+       coalesce(x.crashes, 0) AS crashes,
+       coalesce(x.frontal_crashes, 0) AS frontal_crashes,
+       coalesce(x.frontal_vehicles, 0) AS frontal_vehicles,
+       coalesce(x.censored, 0) AS censored,
+       coalesce(x.simulation_failed, 0) AS simulation_failed,
+       m.olc_median_g AS olc_median_g,
+       x.olc_mean_g AS olc_mean_g, -- of the vehicles with a value only
+       x.olc_min_g AS olc_min_g, x.olc_max_g AS olc_max_g,
+       coalesce(x.inside_validity, 0) AS inside_validity,
+       1.0 * x.inside_validity / nullif(x.frontal_vehicles, 0) AS share_inside_validity
+FROM variant AS v
+LEFT JOIN vehicles AS x ON x.variant_id = v.id
+LEFT JOIN median AS m ON m.variant_id = v.id
+ORDER BY v.number;
+
+-- The same for each scenario and variant.
+DROP VIEW IF EXISTS olc_by_scenario;
+CREATE VIEW olc_by_scenario AS
+WITH ordered AS (
+    SELECT variant_id, scenario_id, olc_g,
+           row_number() OVER (PARTITION BY variant_id, scenario_id ORDER BY olc_g) AS place,
+           count(*) OVER (PARTITION BY variant_id, scenario_id) AS n
+    FROM crash_vehicle
+    WHERE olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')
+), median AS (
+    SELECT variant_id, scenario_id,
+           CASE WHEN count(olc_g) = count(*) THEN avg(olc_g) END AS olc_median_g
+    FROM ordered
+    WHERE place IN ((n + 1) / 2, n / 2 + 1)
+    GROUP BY variant_id, scenario_id
+), vehicles AS (
+    SELECT variant_id, scenario_id,
+           sum(role = 'a') AS crashes,
+           sum(role = 'a' AND frontal = 1) AS frontal_crashes,
+           sum(frontal) AS frontal_vehicles,
+           sum(frontal = 1 AND olc_status IN ('no_deceleration', 'beyond_0_5_s')) AS censored,
+           sum(frontal = 1 AND validity = 'inside') AS inside_validity
+    FROM crash_vehicle
+    GROUP BY variant_id, scenario_id
+)
+SELECT s.name AS scenario, v.name AS variant, s.id AS scenario_id, v.id AS variant_id,
+       coalesce(x.crashes, 0) AS crashes,
+       coalesce(x.frontal_crashes, 0) AS frontal_crashes,
+       coalesce(x.frontal_vehicles, 0) AS frontal_vehicles,
+       coalesce(x.censored, 0) AS censored,
+       m.olc_median_g AS olc_median_g,
+       coalesce(x.inside_validity, 0) AS inside_validity,
+       1.0 * x.inside_validity / nullif(x.frontal_vehicles, 0) AS share_inside_validity
+FROM scenario AS s CROSS JOIN variant AS v
+LEFT JOIN vehicles AS x ON x.variant_id = v.id AND x.scenario_id = s.id
+LEFT JOIN median AS m ON m.variant_id = v.id AND m.scenario_id = s.id
+ORDER BY s.number, v.number;
+
+-- Counts of every finished replication, those without a crash included: what rates and bootstrap
+-- over replications start from.
+DROP VIEW IF EXISTS replication_crashes;
+CREATE VIEW replication_crashes AS
+SELECT r.id AS replication_id, s.name AS scenario, v.name AS variant, r.scenario_id AS scenario_id,
+       r.variant_id AS variant_id, r.number AS replication, r.seed AS seed,
+       r.vehicle_km AS vehicle_km, r.vehicle_h AS vehicle_h, r.simulated_s AS simulated_s,
+       (SELECT count(*) FROM crash AS c WHERE c.replication_id = r.id) AS crashes,
+       (SELECT count(*) FROM crash AS c
+        WHERE c.replication_id = r.id AND c.crash_type LIKE 'front-%') AS frontal_crashes
+FROM replication AS r
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = r.variant_id
+WHERE r.status = 'done'
+ORDER BY s.number, v.number, r.number;
+
+-- Exposure and crash rate of each variant over all its finished replications.
+DROP VIEW IF EXISTS crash_rate_by_variant;
+CREATE VIEW crash_rate_by_variant AS
+SELECT v.name AS variant, v.id AS variant_id, v.is_baseline AS is_baseline,
+       count(x.replication_id) AS replications,
+       coalesce(sum(x.crashes), 0) AS crashes,
+       coalesce(sum(x.frontal_crashes), 0) AS frontal_crashes,
+       coalesce(sum(x.vehicle_km), 0.0) AS vehicle_km,
+       coalesce(sum(x.vehicle_h), 0.0) AS vehicle_h,
+       1e6 * sum(x.crashes) / nullif(sum(x.vehicle_km), 0.0) AS crashes_per_million_km,
+       1e6 * sum(x.frontal_crashes) / nullif(sum(x.vehicle_km), 0.0)
+           AS frontal_crashes_per_million_km
+FROM variant AS v
+LEFT JOIN replication_crashes AS x ON x.variant_id = v.id
+GROUP BY v.id
+ORDER BY v.number;
+
+-- The same for each scenario and variant.
+DROP VIEW IF EXISTS crash_rate_by_scenario;
+CREATE VIEW crash_rate_by_scenario AS
+SELECT s.name AS scenario, v.name AS variant, s.id AS scenario_id, v.id AS variant_id,
+       count(x.replication_id) AS replications,
+       coalesce(sum(x.crashes), 0) AS crashes,
+       coalesce(sum(x.frontal_crashes), 0) AS frontal_crashes,
+       coalesce(sum(x.vehicle_km), 0.0) AS vehicle_km,
+       coalesce(sum(x.vehicle_h), 0.0) AS vehicle_h,
+       1e6 * sum(x.crashes) / nullif(sum(x.vehicle_km), 0.0) AS crashes_per_million_km,
+       1e6 * sum(x.frontal_crashes) / nullif(sum(x.vehicle_km), 0.0)
+           AS frontal_crashes_per_million_km
+FROM scenario AS s CROSS JOIN variant AS v
+LEFT JOIN replication_crashes AS x ON x.variant_id = v.id AND x.scenario_id = s.id
+GROUP BY s.id, v.id
+ORDER BY s.number, v.number;
+
+-- Crashes by variant and type, and how many of each lie inside the validated range.
+DROP VIEW IF EXISTS crash_type_by_variant;
+CREATE VIEW crash_type_by_variant AS
+SELECT v.name AS variant, c.crash_type AS crash_type, count(*) AS crashes,
+       sum(c.validity = 'inside') AS inside_validity,
+       avg(c.closing_speed_m_s) AS closing_speed_mean_m_s
+FROM crash AS c
+JOIN replication AS r ON r.id = c.replication_id
+JOIN variant AS v ON v.id = r.variant_id
+GROUP BY v.id, c.crash_type
+ORDER BY v.number, c.crash_type;
+
+-- SUMO's own reports of colliding pairs against ours: matched are crashes, explained have a verdict,
+-- unexplained touched nobody.
+DROP VIEW IF EXISTS sumo_collision_check;
+CREATE VIEW sumo_collision_check AS
+SELECT s.name AS scenario, v.name AS variant, count(*) AS reported_by_sumo,
+       sum(x.found_as = 'crash') AS matched,
+       sum(x.found_as NOT IN ('crash', 'no_contact')) AS explained,
+       sum(x.found_as = 'no_contact') AS unexplained
+FROM sumo_collision AS x
+JOIN replication AS r ON r.id = x.replication_id
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = r.variant_id
+GROUP BY s.id, v.id
+ORDER BY s.number, v.number;
+
+-- How far the study has come.
+DROP VIEW IF EXISTS progress;
+CREATE VIEW progress AS
+SELECT s.name AS scenario, v.name AS variant, count(*) AS replications,
+       sum(r.status = 'done') AS done, sum(r.status = 'running') AS running,
+       sum(r.status = 'failed') AS failed, sum(r.status = 'planned') AS planned
+FROM replication AS r
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = r.variant_id
+GROUP BY s.id, v.id
+ORDER BY s.number, v.number;

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calibrate/calibration.h"
+
+#include "calibrate/objective.h"
+#include "calibrate/optimiser.h"
+#include "calibrate/simplex.h"
+#include "core/log.h"
+#include "core/progress.h"
+#include "core/rng.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+// A candidate that is no car counts as this far off, g.
+static const double PENALTY_G = 50.0;
+
+// One search: which cases count, at which time step, and how far it is.
+typedef struct search {
+    const cp_fit *fit;
+    const bool *use; /* NULL: all cases */
+    double time_step_s;
+    double *olc_g; /* work space, one value a case */
+    cp_progress progress;
+    cp_status failed;
+    cp_error *error;
+} search;
+
+static double mean_error_at(void *context, const double *point, size_t dimension)
+{
+    search *run = context;
+    cp_vehicle_model model =
+        cp_candidate_model(&run->fit->base, run->fit->unknown, dimension, point);
+    cp_error refused = {0};
+    if (cp_vehicle_model_validate(&model, &refused) != CP_OK)
+        return PENALTY_G;
+    const cp_reference *reference = &run->fit->reference;
+    cp_status status =
+        cp_objective_olc(&model, reference->cases, reference->count, run->time_step_s,
+                         run->fit->threads, run->olc_g, run->error);
+    if (status != CP_OK) {
+        run->failed = status;
+        return PENALTY_G;
+    }
+    return cp_objective_mean_error(reference->cases, run->olc_g, reference->count, run->use,
+                                   PENALTY_G);
+}
+
+// Global search, saved after every generation.
+static cp_status search_globally(search *run, const char *state_path, uint32_t seed, double *point)
+{
+    const cp_fit *fit = run->fit;
+    double start[CP_UNKNOWNS_MAX];
+    cp_candidate_point(&fit->base, fit->unknown, fit->unknown_count, start);
+    cp_optimiser_settings settings = {.algorithm = fit->algorithm,
+                                      .dimension = fit->unknown_count,
+                                      .population = fit->population,
+                                      .seed = seed,
+                                      .start = start,
+                                      .function = mean_error_at,
+                                      .context = run};
+    cp_optimiser *optimiser = NULL;
+    run->time_step_s = fit->global_time_step_s;
+    cp_status status = access(state_path, R_OK) == 0
+                           ? cp_optimiser_restore(&settings, state_path, &optimiser, run->error)
+                           : cp_optimiser_create(&settings, &optimiser, run->error);
+    if (status != CP_OK)
+        return status;
+    cp_progress_begin(&run->progress, "global search", fit->generations);
+    while (status == CP_OK && cp_optimiser_generation(optimiser) < fit->generations) {
+        status = cp_optimiser_evolve(optimiser, run->error);
+        if (status == CP_OK)
+            status = run->failed;
+        if (status == CP_OK)
+            status = cp_optimiser_save(optimiser, state_path, run->error);
+        char best[48];
+        snprintf(best, sizeof best, "best %.4f g", cp_optimiser_best(optimiser, NULL));
+        cp_progress_update(&run->progress, cp_optimiser_generation(optimiser), best);
+    }
+    cp_progress_end(&run->progress);
+    cp_optimiser_best(optimiser, point);
+    cp_optimiser_destroy(optimiser);
+    return status;
+}
+
+static void show_simplex(void *context, size_t done, double best)
+{
+    search *run = context;
+    char text[48];
+    snprintf(text, sizeof text, "best %.4f g", best);
+    cp_progress_update(&run->progress, done, text);
+}
+
+// Local search at the finer step, started again from its own best until it stops gaining.
+static cp_status search_locally(search *run, double *point)
+{
+    const cp_fit *fit = run->fit;
+    if (fit->local_evaluations == 0)
+        return CP_OK;
+    run->time_step_s = fit->local_time_step_s;
+    const int restarts = 3;
+    cp_status status = CP_OK;
+    cp_progress_begin(&run->progress, "local search", fit->local_evaluations);
+    for (int k = 0; status == CP_OK && k < restarts; k++) {
+        double value = 0.0;
+        status = cp_simplex_search(mean_error_at, run, fit->unknown_count, 0.15 / (k + 1),
+                                   fit->local_evaluations / restarts, point, &value, show_simplex,
+                                   run->error);
+        if (status == CP_OK)
+            status = run->failed;
+    }
+    cp_progress_end(&run->progress);
+    return status;
+}
+
+static cp_status fit_once(const cp_fit *fit, const bool *use, const char *state_path, uint32_t seed,
+                          double *olc_g, cp_vehicle_model *model, cp_error *error)
+{
+    search run = {.fit = fit, .use = use, .olc_g = olc_g, .failed = CP_OK, .error = error};
+    double point[CP_UNKNOWNS_MAX];
+    cp_status status = search_globally(&run, state_path, seed, point);
+    if (status == CP_OK)
+        status = search_locally(&run, point);
+    if (status == CP_OK)
+        *model = cp_candidate_model(&fit->base, fit->unknown, fit->unknown_count, point);
+    if (status == CP_OK)
+        status = cp_objective_olc(model, fit->reference.cases, fit->reference.count,
+                                  fit->local_time_step_s, fit->threads, olc_g, error);
+    return status;
+}
+
+// Fold of every case: a seeded shuffle dealt out in turn.
+static void deal_folds(const cp_fit *fit, size_t *fold)
+{
+    size_t count = fit->reference.count;
+    cp_rng_key key = cp_rng_key_text(cp_rng_key_seed(fit->seed), "folds");
+    for (size_t k = 0; k < count; k++)
+        fold[k] = k % fit->folds;
+    for (size_t k = count; k > 1; k--) {
+        size_t other = (size_t)(cp_rng_uniform(key, k) * (double)k);
+        size_t keep = fold[k - 1];
+        fold[k - 1] = fold[other];
+        fold[other] = keep;
+    }
+}
+
+// Fit without each fold in turn, predict the fold.
+static cp_status cross_validate(const cp_fit *fit, cp_calibration *calibration, cp_error *error)
+{
+    size_t count = fit->reference.count;
+    size_t *fold = calloc(count, sizeof *fold);
+    bool *use = calloc(count, sizeof *use);
+    double *olc_g = calloc(count, sizeof *olc_g);
+    calibration->held_out_g = calloc(count, sizeof *calibration->held_out_g);
+    cp_status status = CP_OK;
+    if (fold == NULL || use == NULL || olc_g == NULL || calibration->held_out_g == NULL)
+        status = cp_fail_memory(error, "cross-validation");
+    if (status == CP_OK)
+        deal_folds(fit, fold);
+    for (size_t f = 0; status == CP_OK && f < fit->folds; f++) {
+        cp_log_info("cross-validation: fold %zu of %zu", f + 1, fit->folds);
+        for (size_t k = 0; k < count; k++)
+            use[k] = fold[k] != f;
+        char state_path[4096];
+        snprintf(state_path, sizeof state_path, "%s.fold%zu.fit.state", fit->output_path, f + 1);
+        cp_vehicle_model model;
+        status = fit_once(fit, use, state_path, fit->seed + (uint32_t)f + 1, olc_g, &model, error);
+        for (size_t k = 0; status == CP_OK && k < count; k++)
+            if (!use[k])
+                calibration->held_out_g[k] = olc_g[k];
+    }
+    calibration->fold_count = fit->folds;
+    if (status == CP_OK)
+        status = cp_validate_olc(fit->reference.cases, calibration->held_out_g, count,
+                                 &calibration->cross_validation, error);
+    free(fold);
+    free(use);
+    free(olc_g);
+    return status;
+}
+
+cp_status cp_calibration_run(const cp_fit *fit, cp_calibration *calibration, cp_error *error)
+{
+    *calibration = (cp_calibration){0};
+    size_t count = fit->reference.count;
+    calibration->olc_g = calloc(count, sizeof *calibration->olc_g);
+    if (calibration->olc_g == NULL)
+        return cp_fail_memory(error, "calibration");
+    char state_path[4096];
+    snprintf(state_path, sizeof state_path, "%s.fit.state", fit->output_path);
+    cp_status status =
+        fit_once(fit, NULL, state_path, fit->seed, calibration->olc_g, &calibration->model, error);
+    if (status == CP_OK)
+        status = cp_validate_olc(fit->reference.cases, calibration->olc_g, count,
+                                 &calibration->validation, error);
+    if (status == CP_OK && fit->folds > 1)
+        status = cross_validate(fit, calibration, error);
+    if (status != CP_OK)
+        cp_calibration_destroy(calibration);
+    return status;
+}
+
+void cp_calibration_destroy(cp_calibration *calibration)
+{
+    free(calibration->olc_g);
+    free(calibration->held_out_g);
+    *calibration = (cp_calibration){0};
+}

@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calibrate/fit_file.h"
+
+#include "core/file.h"
+#include "core/hash.h"
+#include "core/yaml_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct yaml_unknown {
+    char *name;
+    char *min;
+    char *max;
+} yaml_unknown;
+
+typedef struct yaml_fit {
+    char *fit;
+    char *description;
+    char *base;
+    char *reference;
+    char *output;
+    char *algorithm;
+    char *seed;
+    char *population;
+    char *generations;
+    char *global_time_step_s;
+    char *local_time_step_s;
+    char *local_evaluations;
+    char *folds;
+    char *threads;
+    yaml_unknown *unknowns;
+    unsigned unknowns_count;
+} yaml_fit;
+
+#define TEXT(key, type)                                                                            \
+    CYAML_FIELD_STRING_PTR(#key, CYAML_FLAG_POINTER, type, key, 0, CYAML_UNLIMITED)
+#define OPTIONAL_TEXT(key, type)                                                                   \
+    CYAML_FIELD_STRING_PTR(#key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, type, key, 0,           \
+                           CYAML_UNLIMITED)
+
+static const cyaml_schema_field_t UNKNOWN_FIELDS[] = {
+    TEXT(name, yaml_unknown), TEXT(min, yaml_unknown), TEXT(max, yaml_unknown), CYAML_FIELD_END};
+static const cyaml_schema_value_t UNKNOWN_VALUE = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, yaml_unknown, UNKNOWN_FIELDS)};
+
+static const cyaml_schema_field_t FIT_FIELDS[] = {
+    TEXT(fit, yaml_fit),
+    OPTIONAL_TEXT(description, yaml_fit),
+    TEXT(base, yaml_fit),
+    TEXT(reference, yaml_fit),
+    TEXT(output, yaml_fit),
+    OPTIONAL_TEXT(algorithm, yaml_fit),
+    TEXT(seed, yaml_fit),
+    OPTIONAL_TEXT(population, yaml_fit),
+    OPTIONAL_TEXT(generations, yaml_fit),
+    OPTIONAL_TEXT(global_time_step_s, yaml_fit),
+    OPTIONAL_TEXT(local_time_step_s, yaml_fit),
+    OPTIONAL_TEXT(local_evaluations, yaml_fit),
+    OPTIONAL_TEXT(folds, yaml_fit),
+    OPTIONAL_TEXT(threads, yaml_fit),
+    CYAML_FIELD_SEQUENCE("unknowns", CYAML_FLAG_POINTER, yaml_fit, unknowns, &UNKNOWN_VALUE, 1,
+                         CP_UNKNOWNS_MAX),
+    CYAML_FIELD_END};
+static const cyaml_schema_value_t FIT_VALUE = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, yaml_fit, FIT_FIELDS)};
+
+// A whole number with a default.
+static cp_status read_count(const cp_yaml_file *file, const char *key, const char *text,
+                            double smallest, double largest, size_t standard, size_t *count,
+                            cp_error *error)
+{
+    double value = (double)standard;
+    cp_status status = cp_yaml_number(file, key, text, smallest, largest, &value, error);
+    if (status == CP_OK && value != (double)(size_t)value)
+        status = cp_yaml_fail(file, error, key, "must be a whole number, found %s", text);
+    *count = (size_t)value;
+    return status;
+}
+
+static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+                              cp_error *error)
+{
+    size_t seed = 0, threads = 1;
+    fit->global_time_step_s = 0.0005;
+    fit->local_time_step_s = 0.0005;
+    cp_status status = read_count(file, "seed", yaml->seed, 0, UINT32_MAX, 0, &seed, error);
+    if (status == CP_OK)
+        status =
+            read_count(file, "population", yaml->population, 8, 10000, 40, &fit->population, error);
+    if (status == CP_OK)
+        status = read_count(file, "generations", yaml->generations, 0, 1e6, 150, &fit->generations,
+                            error);
+    if (status == CP_OK)
+        status = read_count(file, "local_evaluations", yaml->local_evaluations, 0, 1e7, 1000,
+                            &fit->local_evaluations, error);
+    if (status == CP_OK)
+        status = read_count(file, "folds", yaml->folds, 0, 50, 0, &fit->folds, error);
+    if (status == CP_OK)
+        status = read_count(file, "threads", yaml->threads, 1, 64, 1, &threads, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "global_time_step_s", yaml->global_time_step_s, 1e-5, 0.002,
+                                &fit->global_time_step_s, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "local_time_step_s", yaml->local_time_step_s, 1e-5, 0.002,
+                                &fit->local_time_step_s, error);
+    fit->seed = (uint32_t)seed;
+    fit->threads = (int)threads;
+    return status;
+}
+
+static cp_status read_unknown(const cp_yaml_file *file, const yaml_unknown *yaml, size_t row,
+                              cp_fit *fit, cp_error *error)
+{
+    char key[64];
+    snprintf(key, sizeof key, "unknowns[%zu].name", row);
+    if (!cp_unknown_exists(yaml->name))
+        return cp_yaml_fail(file, error, key, "'%s' is no vehicle parameter and no barrier field",
+                            yaml->name);
+    for (size_t k = 0; k < row; k++)
+        if (strcmp(fit->unknown[k].name, yaml->name) == 0)
+            return cp_yaml_fail(file, error, key, "'%s' is given twice", yaml->name);
+    cp_unknown *unknown = &fit->unknown[row];
+    snprintf(unknown->name, sizeof unknown->name, "%s", yaml->name);
+
+    // Bounds within the parameter's own range.
+    double smallest = -3.0, largest = 20.0;
+    size_t index = cp_vehicle_parameter_index(yaml->name);
+    if (index < CP_VEHICLE_PARAMETER_COUNT) {
+        smallest = CP_VEHICLE_PARAMETER[index].smallest;
+        largest = CP_VEHICLE_PARAMETER[index].largest;
+    }
+    snprintf(key, sizeof key, "unknowns[%zu].min", row);
+    cp_status status =
+        cp_yaml_number(file, key, yaml->min, smallest, largest, &unknown->min, error);
+    snprintf(key, sizeof key, "unknowns[%zu].max", row);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, key, yaml->max, smallest, largest, &unknown->max, error);
+    if (status == CP_OK && unknown->max <= unknown->min)
+        status = cp_yaml_fail(file, error, key, "must be above min = %g, found %s", unknown->min,
+                              yaml->max);
+    return status;
+}
+
+static cp_status read_texts(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+                            cp_error *error)
+{
+    if (yaml->fit[0] == '\0' || strlen(yaml->fit) >= sizeof fit->name)
+        return cp_yaml_fail(file, error, "fit", "must have 1 to %zu characters",
+                            sizeof fit->name - 1);
+    snprintf(fit->name, sizeof fit->name, "%s", yaml->fit);
+    if (yaml->description != NULL)
+        snprintf(fit->description, sizeof fit->description, "%s", yaml->description);
+    const char *algorithm = yaml->algorithm != NULL ? yaml->algorithm : "de";
+    if (strcmp(algorithm, "de") != 0 && strcmp(algorithm, "sade") != 0 &&
+        strcmp(algorithm, "cmaes") != 0)
+        return cp_yaml_fail(file, error, "algorithm", "must be de, sade or cmaes, found '%s'",
+                            algorithm);
+    snprintf(fit->algorithm, sizeof fit->algorithm, "%s", algorithm);
+    return CP_OK;
+}
+
+// The files a fit file names, as seen from its folder.
+static cp_status load_named_files(const char *path, const yaml_fit *yaml, cp_fit *fit,
+                                  cp_error *error)
+{
+    char *base_path = cp_file_beside(path, yaml->base);
+    char *reference_path = cp_file_beside(path, yaml->reference);
+    fit->output_path = cp_file_beside(path, yaml->output);
+    fit->reference_path = strdup(yaml->reference);
+    cp_status status = CP_OK;
+    if (base_path == NULL || reference_path == NULL || fit->output_path == NULL ||
+        fit->reference_path == NULL)
+        status = cp_fail_memory(error, path);
+    if (status == CP_OK)
+        status = cp_vehicle_model_load(base_path, &fit->base, error);
+    if (status == CP_OK)
+        status = cp_reference_load(reference_path, &fit->reference, error);
+    free(base_path);
+    free(reference_path);
+    return status;
+}
+
+cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error)
+{
+    *fit = (cp_fit){0};
+    cp_yaml_file file = {0};
+    cp_status status = cp_yaml_load(path, &FIT_VALUE, &file, error);
+    if (status != CP_OK)
+        return status;
+    const yaml_fit *yaml = (const yaml_fit *)file.data;
+    status = read_texts(&file, yaml, fit, error);
+    if (status == CP_OK)
+        status = read_numbers(&file, yaml, fit, error);
+    for (size_t row = 0; status == CP_OK && row < yaml->unknowns_count; row++)
+        status = read_unknown(&file, &yaml->unknowns[row], row, fit, error);
+    fit->unknown_count = yaml->unknowns_count;
+    if (status == CP_OK)
+        status = load_named_files(path, yaml, fit, error);
+    cp_yaml_close(&file);
+    if (status == CP_OK)
+        status = cp_hash_file(path, fit->hash, error);
+    if (status != CP_OK)
+        cp_fit_destroy(fit);
+    return status;
+}
+
+void cp_fit_destroy(cp_fit *fit)
+{
+    cp_reference_destroy(&fit->reference);
+    free(fit->reference_path);
+    free(fit->output_path);
+    *fit = (cp_fit){0};
+}

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calibrate/calibration.h"
+#include "core/file.h"
+#include "core/units.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// ---- the fitted vehicle ----------------------------------------------------------------------
+
+static const cp_unknown *unknown_of(const cp_fit *fit, const char *name)
+{
+    for (size_t k = 0; k < fit->unknown_count; k++)
+        if (strcmp(fit->unknown[k].name, name) == 0)
+            return &fit->unknown[k];
+    return NULL;
+}
+
+static double highest_speed(const cp_fit *fit, double sign)
+{
+    double best = -INFINITY;
+    for (size_t k = 0; k < fit->reference.count; k++)
+        best = fmax(best, sign * fit->reference.cases[k].speed_km_h);
+    return sign * best;
+}
+
+static void write_range(FILE *file, const cp_fit *fit)
+{
+    double offset_mm = 0.0, angle_deg = 0.0;
+    for (size_t k = 0; k < fit->reference.count; k++) {
+        offset_mm = fmax(offset_mm, fabs(fit->reference.cases[k].offset_mm));
+        angle_deg = fmax(angle_deg, fabs(fit->reference.cases[k].angle_deg));
+    }
+    fprintf(file, "calibrated:\n  speed_min_km_h: %g\n  speed_max_km_h: %g\n",
+            highest_speed(fit, -1.0), highest_speed(fit, 1.0));
+    fprintf(file, "  offset_max_mm: %g\n  angle_max_deg: %g\n", offset_mm, angle_deg);
+}
+
+static void write_barrier(FILE *file, const cp_barrier *barrier)
+{
+    fprintf(file, "barrier:\n  width_m: %.9g\n  depth_m: %.9g\n  corner_radius_m: %.9g\n",
+            barrier->width_m, barrier->depth_m, barrier->corner_radius_m);
+    fprintf(file, "  pivot_m: %.9g\n  source: geometry of the reference study, see the fit\n",
+            barrier->pivot_m);
+}
+
+static void write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    const cp_vehicle_model *model = &calibration->model;
+    fprintf(file,
+            "# Made by crashpulse calibrate; the report of the fit stands beside this file.\n");
+    fprintf(file, "# fit file sha256 %s\n# reference sha256 %s\n", fit->hash, fit->reference.hash);
+    fprintf(file,
+            "# %s, seed %u, population %zu, generations %zu, then Nelder-Mead, %zu evaluations\n",
+            fit->algorithm, fit->seed, fit->population, fit->generations, fit->local_evaluations);
+    fprintf(file, "# mean absolute OLC error %.3f g, largest %.2f g, over %zu configurations\n",
+            calibration->validation.mean_abs_error_g, calibration->validation.max_abs_error_g,
+            fit->reference.count);
+    fprintf(file, "vehicle: %s\n", fit->name);
+    if (fit->description[0] != '\0')
+        fprintf(file, "description: \"%s\"\n", fit->description);
+    write_range(file, fit);
+    write_barrier(file, &model->barrier);
+    fprintf(file, "parameters:\n");
+    for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++) {
+        const cp_vehicle_parameter *parameter = &CP_VEHICLE_PARAMETER[k];
+        const cp_unknown *unknown = unknown_of(fit, parameter->name);
+        fprintf(file, "  - {name: %s, value: %.9g, unit: %s, ", parameter->name,
+                cp_vehicle_model_get(model, k), parameter->unit);
+        if (unknown != NULL)
+            fprintf(file, "source: fitted within %g to %g}\n", unknown->min, unknown->max);
+        else
+            fprintf(file, "source: %s}\n", fit->base.name);
+    }
+}
+
+// ---- the report ------------------------------------------------------------------------------
+
+static void write_summary(FILE *file, const char *title, const cp_validation *validation)
+{
+    static const char *const VARIABLE[3] = {"speed km/h", "offset mm", "angle deg"};
+    fprintf(file, "\n## %s\n\n", title);
+    fprintf(file,
+            "Mean absolute error %.3f g; quartiles %.2f / %.2f / %.2f g; largest %.2f g; signed "
+            "errors %.2f to %+.2f g; %zu configurations.\n",
+            validation->mean_abs_error_g, validation->quartile_g[0], validation->quartile_g[1],
+            validation->quartile_g[2], validation->max_abs_error_g, validation->lowest_error_g,
+            validation->highest_error_g, validation->count);
+    for (int v = 0; v < 3; v++) {
+        fprintf(file, "\n| %s | configurations | mean abs. error g |\n|---:|---:|---:|\n",
+                VARIABLE[v]);
+        for (size_t k = 0; k < validation->group_count[v]; k++)
+            fprintf(file, "| %g | %zu | %.3f |\n", validation->group[v][k].value,
+                    validation->group[v][k].count, validation->group[v][k].mean_abs_error_g);
+    }
+}
+
+static void write_cases(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    bool held_out = calibration->held_out_g != NULL;
+    fprintf(file,
+            "\n## Every configuration\n\n| km/h | offset mm | angle deg | reference g | "
+            "model g | error g |%s\n|---:|---:|---:|---:|---:|---:|%s\n",
+            held_out ? " held out g |" : "", held_out ? "---:|" : "");
+    for (size_t k = 0; k < fit->reference.count; k++) {
+        const cp_reference_case *row = &fit->reference.cases[k];
+        fprintf(file, "| %g | %g | %g | %.2f | %.2f | %+.2f |", row->speed_km_h, row->offset_mm,
+                row->angle_deg, row->olc_g, calibration->olc_g[k],
+                calibration->olc_g[k] - row->olc_g);
+        if (held_out)
+            fprintf(file, " %.2f |", calibration->held_out_g[k]);
+        fprintf(file, "\n");
+    }
+}
+
+static void write_cumulative(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    fprintf(file, "\n## Cumulative error\n\n| absolute error below g | share of configurations "
+                  "|\n|---:|---:|\n");
+    for (double limit_g = 0.25; limit_g < 6.0; limit_g *= sqrt(2.0)) {
+        size_t below = 0;
+        for (size_t k = 0; k < fit->reference.count; k++)
+            below += fabs(calibration->olc_g[k] - fit->reference.cases[k].olc_g) < limit_g;
+        fprintf(file, "| %.2f | %.3f |\n", limit_g, (double)below / (double)fit->reference.count);
+    }
+}
+
+static void write_parameters(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    fprintf(file, "\n## Unknowns against their bounds\n\n| unknown | value | smallest | largest | "
+                  "|\n|---|---:|---:|---:|---|\n");
+    for (size_t k = 0; k < fit->unknown_count; k++) {
+        const cp_unknown *unknown = &fit->unknown[k];
+        double value = cp_unknown_get(&calibration->model, unknown->name);
+        double share = (value - unknown->min) / (unknown->max - unknown->min);
+        const char *remark = share < 0.01   ? "at its lower bound"
+                             : share > 0.99 ? "at its upper bound"
+                                            : "";
+        fprintf(file, "| %s | %.4g | %g | %g | %s |\n", unknown->name, value, unknown->min,
+                unknown->max, remark);
+    }
+}
+
+static void write_report(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    fprintf(file, "# Fit of %s\n\n", fit->name);
+    fprintf(file,
+            "Objective: mean absolute OLC error against `%s`. Global search `%s` (seed %u, "
+            "population %zu, %zu generations, time step %g s), then Nelder-Mead (%zu evaluations, "
+            "time step %g s).\n",
+            fit->reference_path, fit->algorithm, fit->seed, fit->population, fit->generations,
+            fit->global_time_step_s, fit->local_evaluations, fit->local_time_step_s);
+    write_summary(file, "Fitted to all configurations", &calibration->validation);
+    if (calibration->held_out_g != NULL) {
+        char title[80];
+        snprintf(title, sizeof title, "%zu-fold cross-validation", calibration->fold_count);
+        write_summary(file, title, &calibration->cross_validation);
+    }
+    write_cumulative(file, fit, calibration);
+    write_parameters(file, fit, calibration);
+    write_cases(file, fit, calibration);
+}
+
+// Write one text file through writer.
+static cp_status write_text(const char *path,
+                            void (*writer)(FILE *, const cp_fit *, const cp_calibration *),
+                            const cp_fit *fit, const cp_calibration *calibration, cp_error *error)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    if (stream == NULL)
+        return cp_fail_memory(error, path);
+    writer(stream, fit, calibration);
+    cp_status status = CP_OK;
+    if (fclose(stream) != 0)
+        status = cp_fail_memory(error, path);
+    if (status == CP_OK)
+        status = cp_file_write(path, text, size, error);
+    free(text);
+    return status;
+}
+
+cp_status cp_calibration_write(const cp_fit *fit, const cp_calibration *calibration,
+                               cp_error *error)
+{
+    char path[4096];
+    cp_status status = write_text(fit->output_path, write_vehicle, fit, calibration, error);
+    snprintf(path, sizeof path, "%s.fit.md", fit->output_path);
+    if (status == CP_OK)
+        status = write_text(path, write_report, fit, calibration, error);
+    if (status != CP_OK)
+        return status;
+
+    // What a killed fit would have gone on from is no longer needed.
+    snprintf(path, sizeof path, "%s.fit.state", fit->output_path);
+    unlink(path);
+    for (size_t f = 0; f < calibration->fold_count; f++) {
+        snprintf(path, sizeof path, "%s.fold%zu.fit.state", fit->output_path, f + 1);
+        unlink(path);
+    }
+    return CP_OK;
+}

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calibrate/reference.h"
+
+#include "core/file.h"
+#include "core/hash.h"
+#include "core/yaml_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { COLUMN_SPEED, COLUMN_OFFSET, COLUMN_ANGLE, COLUMN_OLC, COLUMN_COUNT };
+
+static const char *const COLUMN_NAME[COLUMN_COUNT] = {"speed_kmh", "offset_mm", "angle_deg",
+                                                      "olc_fe_g"};
+static const double SMALLEST[COLUMN_COUNT] = {1.0, -3000.0, -90.0, 0.0};
+static const double LARGEST[COLUMN_COUNT] = {200.0, 3000.0, 90.0, 200.0};
+
+// Cut a line into at most room fields in place; returns how many there are.
+static size_t split_fields(char *line, char **fields, size_t room)
+{
+    size_t count = 0;
+    line[strcspn(line, "\r")] = '\0';
+    for (char *field = line; field != NULL && count < room; count++) {
+        fields[count] = field;
+        field = strchr(field, ',');
+        if (field != NULL)
+            *field++ = '\0';
+    }
+    return count;
+}
+
+#define FIELDS_MAX 32
+
+static cp_status find_columns(const char *path, char *header, size_t place[COLUMN_COUNT],
+                              cp_error *error)
+{
+    char *fields[FIELDS_MAX];
+    size_t count = split_fields(header, fields, FIELDS_MAX);
+    for (int c = 0; c < COLUMN_COUNT; c++) {
+        place[c] = FIELDS_MAX;
+        for (size_t k = 0; k < count; k++)
+            if (strcmp(fields[k], COLUMN_NAME[c]) == 0 ||
+                (c == COLUMN_OLC && strcmp(fields[k], "olc_g") == 0))
+                place[c] = k;
+        if (place[c] == FIELDS_MAX)
+            return cp_fail(error, CP_BAD_INPUT, "%s:1: column %s is missing", path, COLUMN_NAME[c]);
+    }
+    return CP_OK;
+}
+
+static cp_status read_case(const char *path, size_t line_number, char *line,
+                           const size_t place[COLUMN_COUNT], cp_reference_case *row,
+                           cp_error *error)
+{
+    char *fields[FIELDS_MAX];
+    size_t count = split_fields(line, fields, FIELDS_MAX);
+    double value[COLUMN_COUNT];
+    for (int c = 0; c < COLUMN_COUNT; c++) {
+        const char *text = place[c] < count ? fields[place[c]] : "";
+        if (!cp_parse_number(text, &value[c]) || value[c] < SMALLEST[c] || value[c] > LARGEST[c])
+            return cp_fail(error, CP_BAD_INPUT,
+                           "%s:%zu: %s must be a number between %g and %g, found '%s'", path,
+                           line_number, COLUMN_NAME[c], SMALLEST[c], LARGEST[c], text);
+    }
+    *row = (cp_reference_case){value[COLUMN_SPEED], value[COLUMN_OFFSET], value[COLUMN_ANGLE],
+                               value[COLUMN_OLC]};
+    return CP_OK;
+}
+
+static cp_status read_lines(const char *path, char *content, cp_reference *reference,
+                            cp_error *error)
+{
+    size_t lines = 1;
+    for (const char *c = content; *c != '\0'; c++)
+        lines += *c == '\n';
+    reference->cases = calloc(lines, sizeof *reference->cases);
+    if (reference->cases == NULL)
+        return cp_fail_memory(error, path);
+    size_t place[COLUMN_COUNT] = {0}, number = 0;
+    for (char *line = content; line != NULL && *line != '\0';) {
+        char *next = strchr(line, '\n');
+        if (next != NULL)
+            *next++ = '\0';
+        cp_status status = CP_OK;
+        if (++number == 1)
+            status = find_columns(path, line, place, error);
+        else if (line[strspn(line, " \t\r")] != '\0')
+            status =
+                read_case(path, number, line, place, &reference->cases[reference->count++], error);
+        if (status != CP_OK)
+            return status;
+        line = next;
+    }
+    if (reference->count == 0)
+        return cp_fail(error, CP_BAD_INPUT, "%s: no configuration in the file", path);
+    return CP_OK;
+}
+
+cp_status cp_reference_load(const char *path, cp_reference *reference, cp_error *error)
+{
+    *reference = (cp_reference){0};
+    char *content = NULL;
+    size_t size = 0;
+    cp_status status = cp_file_read(path, &content, &size, error);
+    if (status != CP_OK)
+        return status;
+    cp_hash_bytes(content, size, reference->hash);
+    status = read_lines(path, content, reference, error);
+    free(content);
+    if (status != CP_OK)
+        cp_reference_destroy(reference);
+    return status;
+}
+
+void cp_reference_destroy(cp_reference *reference)
+{
+    free(reference->cases);
+    *reference = (cp_reference){0};
+}

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "impact/confirmation.h"
+
+#include "impact/approach.h"
+
+cp_rectangle cp_touching_body_later(const cp_touching_body *body, double time_s)
+{
+    // The front moves along an arc: its chord is turned by half the angle and shorter than the arc.
+    double half_turn_rad = 0.5 * body->yaw_rate_rad_s * time_s;
+    double chord_1 = half_turn_rad == 0.0 ? 1.0 : sin(half_turn_rad) / half_turn_rad;
+    cp_vec2 chord_m =
+        cp_vec2_rotate(cp_vec2_scale(body->front_velocity_m_s, time_s * chord_1), half_turn_rad);
+
+    // The centre hangs half a length behind the front.
+    cp_rectangle later = body->rectangle;
+    cp_vec2 half_m = {0.5 * later.length_m, 0.0};
+    cp_vec2 front_m = cp_vec2_add(later.centre_m, cp_vec2_rotate(half_m, later.yaw_rad));
+    later.yaw_rad += 2.0 * half_turn_rad;
+    later.centre_m =
+        cp_vec2_sub(cp_vec2_add(front_m, chord_m), cp_vec2_rotate(half_m, later.yaw_rad));
+    return later;
+}
+
+static void bodies_later(const void *context, double time_s, cp_rectangle rectangle[2])
+{
+    const cp_touching_body *body = context;
+    for (int k = 0; k < 2; k++)
+        rectangle[k] = cp_touching_body_later(&body[k], time_s);
+}
+
+bool cp_contact_goes_deep(const cp_touching_body body[2])
+{
+    // The relative speed of now, and what turning the velocities can add to it.
+    double speed_m_s =
+        cp_vec2_length(cp_vec2_sub(body[0].front_velocity_m_s, body[1].front_velocity_m_s));
+    for (int k = 0; k < 2; k++)
+        speed_m_s += fabs(body[k].yaw_rate_rad_s) * CP_CONFIRMATION_TIME_S *
+                     cp_vec2_length(body[k].front_velocity_m_s);
+    cp_rectangle rectangle[2] = {body[0].rectangle, body[1].rectangle};
+    double yaw_rate_rad_s[2] = {body[0].yaw_rate_rad_s, body[1].yaw_rate_rad_s};
+    cp_approach approach = {
+        .rectangles_at = bodies_later,
+        .context = body,
+        .duration_s = CP_CONFIRMATION_TIME_S,
+        .rate_m_s = cp_approach_rate(rectangle, speed_m_s, yaw_rate_rad_s, CP_CONFIRMATION_TIME_S)};
+    double time_s;
+    return cp_approach_reaches(&approach, -CP_CONFIRMATION_DEPTH_M, &time_s);
+}
+
+// Share of a's width that b's rectangle covers, projected on a's y axis.
+static double overlap_share(const cp_rectangle *a, const cp_rectangle *b)
+{
+    cp_vec2 corners_m[4];
+    cp_rectangle_corners(b, corners_m);
+    double low_m = 0.5 * a->width_m, high_m = -low_m;
+    for (int k = 0; k < 4; k++) {
+        double y_m = cp_pose_to_local((cp_pose){a->centre_m, a->yaw_rad}, corners_m[k]).y;
+        low_m = fmin(low_m, y_m);
+        high_m = fmax(high_m, y_m);
+    }
+    double half_m = 0.5 * a->width_m;
+    return (fmin(high_m, half_m) - fmax(low_m, -half_m)) / a->width_m;
+}
+
+bool cp_contact_is_crash(const cp_touching_body body[2], const cp_touch *touch)
+{
+    bool front_on_front = touch->side[0] == CP_SIDE_FRONT && touch->side[1] == CP_SIDE_FRONT;
+    if (front_on_front &&
+        overlap_share(&body[0].rectangle, &body[1].rectangle) >= CP_CONFIRMATION_OVERLAP_1)
+        return true;
+    return cp_contact_goes_deep(body);
+}

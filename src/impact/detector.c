@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "impact/detector.h"
+
+#include "impact/approach.h"
+#include "impact/array.h"
+#include "impact/broad_phase.h"
+#include "impact/confirmation.h"
+#include "impact/footprint.h"
+#include "impact/pair_set.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct cp_detector {
+    cp_pair_set reported;
+    cp_broad_phase broad_phase;
+    cp_box *box; /* one a vehicle: where its rectangle is during the step */
+    size_t box_capacity;
+    cp_impact *impact; /* of this step */
+    size_t impact_capacity;
+    size_t impact_count;
+};
+
+cp_status cp_detector_create(cp_detector **detector, cp_error *error)
+{
+    *detector = calloc(1, sizeof **detector);
+    return *detector != NULL ? CP_OK : cp_fail_memory(error, "contact detector");
+}
+
+void cp_detector_destroy(cp_detector *detector)
+{
+    if (detector == NULL)
+        return;
+    cp_pair_set_destroy(&detector->reported);
+    cp_broad_phase_destroy(&detector->broad_phase);
+    free(detector->box);
+    free(detector->impact);
+    free(detector);
+}
+
+static void enclose(cp_box *box, const cp_vehicle_state *state, double margin_m)
+{
+    cp_rectangle rectangle = cp_footprint_of_state(state);
+    cp_vec2 corners_m[4];
+    cp_rectangle_corners(&rectangle, corners_m);
+    for (int k = 0; k < 4; k++) {
+        box->min_x_m = fmin(box->min_x_m, corners_m[k].x - margin_m);
+        box->min_y_m = fmin(box->min_y_m, corners_m[k].y - margin_m);
+        box->max_x_m = fmax(box->max_x_m, corners_m[k].x + margin_m);
+        box->max_y_m = fmax(box->max_y_m, corners_m[k].y + margin_m);
+    }
+}
+
+static bool is_finite_state(const cp_vehicle_state *state)
+{
+    return isfinite(state->front_x_m) && isfinite(state->front_y_m) && isfinite(state->yaw_rad);
+}
+
+// Box of the way through the step. Between two headings a corner swings out of the straight line
+// by no more than its lever times 1 - cos of half the turn.
+static cp_box box_of(const cp_vehicle_motion *motion, double step_length_s)
+{
+    cp_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    if (cp_motion_is_jump(motion, step_length_s)) {
+        if (is_finite_state(&motion->after))
+            enclose(&box, &motion->after, 0.0);
+        return box;
+    }
+    if (!is_finite_state(&motion->before) || !is_finite_state(&motion->after))
+        return box;
+    double half_turn_rad = 0.5 * cp_wrap_angle(motion->after.yaw_rad - motion->before.yaw_rad);
+    double lever_m = hypot(motion->after.length_m, motion->after.width_m);
+    double margin_m = lever_m * (1.0 - cos(half_turn_rad));
+    enclose(&box, &motion->before, margin_m);
+    enclose(&box, &motion->after, margin_m);
+    return box;
+}
+
+// Moment of the first touch as a fraction of the step; a vehicle that jumped is only where it is
+// at the end. False when the two do not touch.
+static bool find_touch(const cp_vehicle_motion *const motion[2], double step_length_s,
+                       double *fraction, bool *after_jump)
+{
+    *after_jump =
+        cp_motion_is_jump(motion[0], step_length_s) || cp_motion_is_jump(motion[1], step_length_s);
+    if (!*after_jump)
+        return cp_first_contact(motion[0], motion[1], step_length_s, fraction);
+    cp_rectangle one = cp_footprint_of_state(&motion[0]->after);
+    cp_rectangle other = cp_footprint_of_state(&motion[1]->after);
+    *fraction = 1.0;
+    return cp_rectangle_separation(&one, &other) <= 0.0;
+}
+
+static const char *id_of(const cp_detector_scene *scene, uint32_t vehicle)
+{
+    return scene->vehicle_id(scene->id_context, vehicle);
+}
+
+// Which of two vehicles, the smaller id first, is a: the one whose front is struck; else the one
+// at fault; else the first.
+static int role_a(const cp_detector_scene *scene, const cp_vehicle_motion *const motion[2],
+                  const cp_contact_side side[2])
+{
+    bool front[2] = {side[0] == CP_SIDE_FRONT, side[1] == CP_SIDE_FRONT};
+    if (front[0] != front[1])
+        return front[1];
+    if (scene->is_at_fault == NULL)
+        return 0;
+    bool at_fault[2];
+    for (int k = 0; k < 2; k++)
+        at_fault[k] = scene->is_at_fault(scene->fault_context, motion[k]->after.vehicle);
+    return at_fault[1] && !at_fault[0];
+}
+
+// All there is to say about a touch at that fraction of the step.
+static cp_impact impact_of(const cp_detector_scene *scene, const cp_vehicle_motion *const motion[2],
+                           double fraction, bool after_jump)
+{
+    // Bodies at first touch, the smaller id first, so that nothing depends on SUMO's order.
+    cp_vehicle_state state[2];
+    cp_touching_body body[2];
+    for (int k = 0; k < 2; k++) {
+        bool jumped = cp_motion_is_jump(motion[k], scene->step_length_s);
+        state[k] = cp_motion_at(motion[k], scene->step_length_s, fraction);
+        body[k] = (cp_touching_body){.rectangle = cp_footprint_of_state(&state[k]),
+                                     .front_velocity_m_s = cp_motion_front_velocity(
+                                         motion[k], scene->step_length_s, fraction),
+                                     .yaw_rate_rad_s = jumped ? 0.0 : motion[k]->yaw_rate_rad_s};
+    }
+    cp_touch touch = cp_touch_of(body);
+
+    // Into roles.
+    int a = role_a(scene, motion, touch.side);
+    cp_touching_body by_role[2] = {body[a], body[1 - a]};
+    cp_touch touch_by_role = {touch.point_m, {touch.side[a], touch.side[1 - a]}};
+    cp_impact impact = {.time_s = scene->time_s - (1.0 - fraction) * scene->step_length_s,
+                        .contact_m = touch.point_m,
+                        .verdict = after_jump ? CP_CONTACT_AT_INSERTION
+                                   : cp_contact_is_crash(by_role, &touch_by_role)
+                                       ? CP_CONTACT_CONFIRMED
+                                       : CP_CONTACT_GRAZE};
+    for (int role = 0; role < 2; role++) {
+        int k = role == 0 ? a : 1 - a;
+        impact.vehicle[role] = state[k].vehicle;
+        impact.state[role] = state[k];
+        impact.yaw_rate_rad_s[role] = body[k].yaw_rate_rad_s;
+        impact.front_velocity_m_s[role] = body[k].front_velocity_m_s;
+        impact.side[role] = touch.side[k];
+    }
+    return impact;
+}
+
+// Whether one impact comes before another: by time, then by the ids of a and b.
+static bool is_before(const cp_detector_scene *scene, const cp_impact *one, const cp_impact *other)
+{
+    if (one->time_s != other->time_s)
+        return one->time_s < other->time_s;
+    int order = strcmp(id_of(scene, one->vehicle[0]), id_of(scene, other->vehicle[0]));
+    if (order == 0)
+        order = strcmp(id_of(scene, one->vehicle[1]), id_of(scene, other->vehicle[1]));
+    return order < 0;
+}
+
+static cp_status report(cp_detector *detector, const cp_detector_scene *scene,
+                        const cp_impact *impact, cp_error *error)
+{
+    cp_status status = cp_array_reserve(detector->impact, detector->impact_capacity,
+                                        detector->impact_count + 1, "impacts of a step", error);
+    if (status == CP_OK)
+        status =
+            cp_pair_set_add(&detector->reported, impact->vehicle[0], impact->vehicle[1], error);
+    if (status != CP_OK)
+        return status;
+
+    // In order: there are few in a step.
+    size_t place = detector->impact_count++;
+    for (; place > 0 && is_before(scene, impact, &detector->impact[place - 1]); place--)
+        detector->impact[place] = detector->impact[place - 1];
+    detector->impact[place] = *impact;
+    return CP_OK;
+}
+
+static cp_status examine(cp_detector *detector, const cp_detector_scene *scene, cp_box_pair pair,
+                         cp_error *error)
+{
+    const cp_vehicle_motion *motion[2] = {&scene->motions[pair.first],
+                                          &scene->motions[pair.second]};
+    uint32_t one = motion[0]->after.vehicle, other = motion[1]->after.vehicle;
+    double fraction;
+    bool after_jump;
+    if (one == other || cp_pair_set_contains(&detector->reported, one, other) ||
+        !find_touch(motion, scene->step_length_s, &fraction, &after_jump))
+        return CP_OK;
+    if (strcmp(id_of(scene, one), id_of(scene, other)) > 0) {
+        const cp_vehicle_motion *swap = motion[0];
+        motion[0] = motion[1];
+        motion[1] = swap;
+    }
+    cp_impact impact = impact_of(scene, motion, fraction, after_jump);
+    return report(detector, scene, &impact, error);
+}
+
+cp_status cp_detector_scan(cp_detector *detector, const cp_detector_scene *scene,
+                           const cp_impact **impacts, size_t *count, cp_error *error)
+{
+    *impacts = NULL;
+    *count = 0;
+    detector->impact_count = 0;
+    cp_status status = cp_array_reserve(detector->box, detector->box_capacity, scene->count,
+                                        "boxes of vehicles", error);
+    if (status != CP_OK)
+        return status;
+    for (size_t k = 0; k < scene->count; k++)
+        detector->box[k] = box_of(&scene->motions[k], scene->step_length_s);
+
+    // Near pairs first, then each of them closely.
+    const cp_box_pair *pair;
+    size_t pair_count;
+    status = cp_broad_phase_pairs(&detector->broad_phase, detector->box, scene->count, &pair,
+                                  &pair_count, error);
+    for (size_t k = 0; k < pair_count && status == CP_OK; k++)
+        status = examine(detector, scene, pair[k], error);
+    if (status != CP_OK)
+        return status;
+    *impacts = detector->impact;
+    *count = detector->impact_count;
+    return CP_OK;
+}
+
+static const char *id_in_traffic(const void *context, uint32_t vehicle)
+{
+    return cp_traffic_vehicle_id(context, vehicle);
+}
+
+cp_status cp_detector_step(cp_detector *detector, const cp_traffic *traffic,
+                           bool (*is_at_fault)(void *context, uint32_t vehicle), void *context,
+                           const cp_impact **impacts, size_t *count, cp_error *error)
+{
+    cp_detector_scene scene = {.step_length_s = cp_traffic_step_length_s(traffic),
+                               .time_s = cp_traffic_time_s(traffic),
+                               .vehicle_id = id_in_traffic,
+                               .id_context = traffic,
+                               .is_at_fault = is_at_fault,
+                               .fault_context = context};
+    scene.motions = cp_traffic_motions(traffic, &scene.count);
+    return cp_detector_scan(detector, &scene, impacts, count, error);
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IMPACT_DETECTOR_H
+#define IMPACT_DETECTOR_H
+
+#include "impact/impact.h"
+
+/* What the detector looks at: one step of any traffic, simulated or made up. */
+typedef struct cp_detector_scene {
+    const cp_vehicle_motion *motions; /* each vehicle at most once */
+    size_t count;
+    double step_length_s;
+    double time_s; /* clock at the end of the step */
+    const char *(*vehicle_id)(const void *context, uint32_t vehicle);
+    const void *id_context;
+    bool (*is_at_fault)(void *context, uint32_t vehicle); /* may be NULL */
+    void *fault_context;
+} cp_detector_scene;
+
+/* cp_detector_step (impact.h) on a scene. */
+CP_MUST_CHECK cp_status cp_detector_scan(cp_detector *detector, const cp_detector_scene *scene,
+                                         const cp_impact **impacts, size_t *count, cp_error *error);
+
+#endif

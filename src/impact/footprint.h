@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IMPACT_FOOTPRINT_H
+#define IMPACT_FOOTPRINT_H
+
+#include "core/geometry.h"
+#include "traffic/traffic.h"
+
+/* The rectangle a vehicle covers, and where it is inside a step. */
+
+/* Rectangle of a SUMO state: front-bumper middle, heading, length, width. */
+cp_rectangle cp_footprint_of_state(const cp_vehicle_state *state);
+
+/* State inside the step: fraction 0 = beginning, 1 = end. Constant acceleration along the chord
+ * between the two positions (ballistic update; a vehicle that comes to rest inside the step stands
+ * from there on), heading turned evenly; speed likewise. Lane and type are those of the end. Of a
+ * motion whose vehicle was not present before: the state of the end. */
+cp_vehicle_state cp_motion_at(const cp_vehicle_motion *motion, double step_length_s,
+                              double fraction);
+
+/* Velocity of the middle of the front bumper at that fraction, world frame: along the chord, so
+ * that a lane change shows; its size is the speed when the chord is as long as the speeds say.
+ * After a jump (below): along the heading. */
+cp_vec2 cp_motion_front_velocity(const cp_vehicle_motion *motion, double step_length_s,
+                                 double fraction);
+
+/* True when the vehicle was set down where it is rather than driven there: inserted, teleported,
+ * or moved sideways at more than 8 m/s (SUMO's instant lane change; turning cars reach 5). */
+bool cp_motion_is_jump(const cp_vehicle_motion *motion, double step_length_s);
+
+#endif

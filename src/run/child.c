@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run/child.h"
+
+#include "core/progress.h"
+#include "run/worker.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#define TAIL_BYTES 1500 /* of stderr kept as the reason of a failure */
+#define LOG_PREFIX "crashpulse: "
+
+extern char **environ;
+
+// ---- starting ------------------------------------------------------------------------------
+
+// Its descriptors: nothing from stdout, stderr to the file, the report pipe at its known number.
+static int set_descriptors(posix_spawn_file_actions_t *actions, const cp_child *child, int report)
+{
+    int failed = posix_spawn_file_actions_addopen(actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    if (failed == 0)
+        failed = posix_spawn_file_actions_addopen(actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    if (failed == 0)
+        failed = posix_spawn_file_actions_adddup2(actions, fileno(child->messages), STDERR_FILENO);
+    if (failed == 0)
+        failed = posix_spawn_file_actions_adddup2(actions, report, CP_WORKER_REPORT_FD);
+    return failed;
+}
+
+// Its signals: none blocked, none ignored, a process group of its own.
+static int set_attributes(posix_spawnattr_t *attributes)
+{
+    sigset_t none, all;
+    sigemptyset(&none);
+    sigfillset(&all);
+    int failed = posix_spawnattr_setflags(
+        attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+    if (failed == 0)
+        failed = posix_spawnattr_setsigmask(attributes, &none);
+    if (failed == 0)
+        failed = posix_spawnattr_setsigdefault(attributes, &all);
+    if (failed == 0)
+        failed = posix_spawnattr_setpgroup(attributes, 0);
+    return failed;
+}
+
+static int spawn(const char *program, const char *const *arguments, cp_child *child, int report)
+{
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    int failed = posix_spawn_file_actions_init(&actions);
+    if (failed != 0)
+        return failed;
+    failed = posix_spawnattr_init(&attributes);
+    if (failed == 0) {
+        failed = set_descriptors(&actions, child, report);
+        if (failed == 0)
+            failed = set_attributes(&attributes);
+        if (failed == 0) // posix_spawn takes the words without changing them
+            failed = posix_spawn(&child->pid, program, &actions, &attributes,
+                                 (char *const *)arguments, environ);
+        posix_spawnattr_destroy(&attributes);
+    }
+    posix_spawn_file_actions_destroy(&actions);
+    return failed;
+}
+
+cp_status cp_child_start(const char *program, const char *const *arguments, cp_child *child,
+                         cp_error *error)
+{
+    int ends[2] = {-1, -1};
+    *child = (cp_child){.report = -1, .started_s = cp_clock_s()};
+    child->messages = tmpfile();
+    int failed = child->messages == NULL || pipe(ends) != 0 ? errno : 0;
+    if (failed == 0) {
+        // None of ours reaches the other children.
+        child->report = ends[0];
+        fcntl(ends[0], F_SETFD, FD_CLOEXEC);
+        fcntl(ends[1], F_SETFD, FD_CLOEXEC);
+        fcntl(fileno(child->messages), F_SETFD, FD_CLOEXEC);
+        failed = spawn(program, arguments, child, ends[1]);
+        close(ends[1]);
+    }
+    if (failed == 0)
+        return CP_OK;
+    if (child->messages != NULL)
+        fclose(child->messages);
+    if (child->report >= 0)
+        close(child->report);
+    *child = (cp_child){0};
+    return cp_fail(error, CP_IO_FAILED, "%s: cannot be started: %s", program, strerror(failed));
+}
+
+// ---- collecting ----------------------------------------------------------------------------
+
+static void pass_on_log(FILE *messages)
+{
+    char line[8192];
+    rewind(messages);
+    while (fgets(line, sizeof line, messages) != NULL)
+        if (strncmp(line, LOG_PREFIX, strlen(LOG_PREFIX)) == 0)
+            fputs(line, stderr);
+}
+
+static void append(char reason[CP_CHILD_REASON_SIZE], const char *text)
+{
+    size_t used = strlen(reason);
+    snprintf(reason + used, CP_CHILD_REASON_SIZE - used, "%s", text);
+}
+
+// The last lines of stderr, whole ones.
+static void append_tail(FILE *messages, char reason[CP_CHILD_REASON_SIZE])
+{
+    char tail[TAIL_BYTES + 1];
+    fseek(messages, 0, SEEK_END);
+    long size = ftell(messages);
+    long from = size > TAIL_BYTES ? size - TAIL_BYTES : 0;
+    fseek(messages, from, SEEK_SET);
+    size_t length = fread(tail, 1, TAIL_BYTES, messages);
+    while (length > 0 && (tail[length - 1] == '\n' || tail[length - 1] == ' '))
+        length--;
+    tail[length] = '\0';
+    const char *begin = tail;
+    if (from > 0 && strchr(tail, '\n') != NULL)
+        begin = strchr(tail, '\n') + 1;
+    if (*begin != '\0') {
+        append(reason, "; last words: ");
+        append(reason, begin);
+    }
+}
+
+static void explain(cp_child *child, int wait_status, char reason[CP_CHILD_REASON_SIZE])
+{
+    // The pipe is short and its writer is gone: one read has it all.
+    ssize_t length = read(child->report, reason, CP_CHILD_REASON_SIZE / 2);
+    reason[length > 0 ? length : 0] = '\0';
+    if (WIFSIGNALED(wait_status)) {
+        char text[128];
+        int number = WTERMSIG(wait_status);
+        snprintf(text, sizeof text, "%sended by signal %d (%s)", length > 0 ? "; " : "", number,
+                 strsignal(number));
+        append(reason, text);
+        append_tail(child->messages, reason);
+    } else if (length <= 0) {
+        append(reason, "ended without a message");
+        append_tail(child->messages, reason);
+    }
+}
+
+void cp_child_collect(cp_child *child, int wait_status, cp_child_end *end)
+{
+    end->exit_code = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : -1;
+    end->wall_time_s = cp_clock_s() - child->started_s;
+    end->reason[0] = '\0';
+    pass_on_log(child->messages);
+    if (end->exit_code != 0 && end->exit_code != CP_WORKER_EXIT_ELSEWHERE)
+        explain(child, wait_status, end->reason);
+    fclose(child->messages);
+    close(child->report);
+    *child = (cp_child){0};
+}
+
+void cp_child_kill(cp_child *child, cp_child_end *end)
+{
+    int wait_status = 0;
+    kill(child->pid, SIGKILL);
+    while (waitpid(child->pid, &wait_status, 0) < 0 && errno == EINTR)
+        continue;
+    cp_child_collect(child, wait_status, end);
+}

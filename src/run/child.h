@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RUN_CHILD_H
+#define RUN_CHILD_H
+
+#include "core/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <sys/types.h>
+
+/* One worker process as the runner sees it. Its stderr goes to a nameless file, its error text
+ * through a pipe, its stdout (SUMO's chatter) nowhere. It is in a process group of its own, so that
+ * Ctrl-C reaches the runner alone. */
+typedef struct cp_child {
+    pid_t pid;        /* 0: none */
+    int report;       /* read end of the pipe */
+    FILE *messages;   /* what it wrote to stderr */
+    double started_s; /* monotonic clock */
+} cp_child;
+
+#define CP_CHILD_REASON_SIZE 4096
+
+/* How a child ended. */
+typedef struct cp_child_end {
+    int exit_code; /* -1 when a signal ended it */
+    double wall_time_s;
+    char reason[CP_CHILD_REASON_SIZE]; /* "" after success: its error text, or how it died, and the
+                                          last lines of its stderr */
+} cp_child_end;
+
+/* Start program with arguments (arguments[0] is the name, NULL ends the list). */
+CP_MUST_CHECK cp_status cp_child_start(const char *program, const char *const *arguments,
+                                       cp_child *child, cp_error *error);
+
+/* After a child ended with wait status wait_status: what it said, resources freed, child zeroed.
+ * Its log lines ("crashpulse: ...") are passed on to our stderr. */
+void cp_child_collect(cp_child *child, int wait_status, cp_child_end *end);
+
+/* Kill it and wait for its end. */
+void cp_child_kill(cp_child *child, cp_child_end *end);
+
+#endif

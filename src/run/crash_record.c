@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run/crash_record.h"
+
+#include "core/log.h"
+#include "crash/crash_simulation.h"
+#include "store/pulse_codec.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const cp_severity NO_SEVERITY = {
+    .olc = {.status = CP_OLC_SIMULATION_FAILED, .olc_g = NAN, .t1_s = NAN, .t2_s = NAN},
+    .end_s = NAN,
+    .delta_v_m_s = NAN,
+    .delta_v_x_m_s = NAN,
+    .delta_v_y_m_s = NAN,
+    .peak_g = NAN,
+    .mean_g = NAN,
+    .t_v0_s = NAN,
+    .max_50ms_g = NAN,
+    .asi_1 = NAN,
+    .pdof_rad = NAN,
+    .yaw_change_rad_s = NAN};
+
+static cp_status fill_vehicle(const cp_impact *impact, const cp_impact_names *names,
+                              const cp_vehicle_model *const models[2],
+                              const cp_crash_configuration *configuration, int role,
+                              cp_crash_row *row, cp_error *error)
+{
+    cp_crash_vehicle_row *vehicle = &row->vehicle[role];
+    vehicle->sumo_id = strdup(names->sumo_id[role]);
+    vehicle->sumo_type = strdup(names->sumo_type[role]);
+    vehicle->vehicle_model = strdup(models[role]->name);
+    if (vehicle->sumo_id == NULL || vehicle->sumo_type == NULL || vehicle->vehicle_model == NULL)
+        return cp_fail_memory(error, "crash");
+    vehicle->at_fault = names->at_fault[role];
+    vehicle->body = configuration->vehicle[role];
+    vehicle->speed_m_s = row->description.speed_m_s[role];
+    vehicle->length_m = impact->state[role].length_m;
+    vehicle->width_m = impact->state[role].width_m;
+    vehicle->velocity_angle_rad = row->description.velocity_angle_rad[role];
+    vehicle->side = impact->side[role];
+    vehicle->outside = cp_validity(models[0], models[1], configuration, &row->description, role);
+    vehicle->severity = NO_SEVERITY;
+    vehicle->crush_m = NAN;
+    return CP_OK;
+}
+
+static cp_status keep_pulse(const cp_pulse *raw, cp_crash_vehicle_row *vehicle, cp_error *error)
+{
+    cp_pulse record = {0};
+    cp_status status = cp_pulse_codec_record(raw, &record, error);
+    if (status == CP_OK)
+        status = cp_pulse_encode(&record, &vehicle->pulse, &vehicle->pulse_size, error);
+    vehicle->sample_count = record.sample_count;
+    vehicle->sample_interval_s = record.sample_interval_s;
+    cp_pulse_destroy(&record);
+    return status;
+}
+
+// Run the surrogate and take over what it says of both cars.
+static cp_status simulate(const cp_vehicle_model *const models[2],
+                          const cp_crash_configuration *configuration, cp_crash_row *row,
+                          cp_error *error)
+{
+    cp_crash_options options = cp_crash_options_default();
+    cp_crash_result result = {0};
+    cp_status status =
+        cp_crash_simulate(models[0], models[1], configuration, &options, &result, error);
+    if (status == CP_OK && !result.touched)
+        status = cp_fail(error, CP_CRASH_FAILED, "the outlines of the two models never met");
+    for (int role = 0; status == CP_OK && role < 2; role++)
+        status = keep_pulse(&result.pulse[role], &row->vehicle[role], error);
+    if (status == CP_OK) {
+        for (int role = 0; role < 2; role++) {
+            row->vehicle[role].severity = result.severity[role];
+            row->vehicle[role].crush_m = result.crush_m[role];
+        }
+        row->separation_s = result.separation_s;
+        row->t_common_s = result.t_common_s;
+        row->shift_m = result.shift_m;
+    }
+    cp_crash_result_destroy(&result);
+    return status;
+}
+
+cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *names,
+                               const cp_fleet *fleet, cp_crash_row *row, cp_error *error)
+{
+    const cp_vehicle_model *const models[2] = {cp_fleet_model(fleet, names->sumo_type[0]),
+                                               cp_fleet_model(fleet, names->sumo_type[1])};
+    cp_crash_configuration configuration = cp_impact_configuration(impact, models[0], models[1]);
+    row->time_s = impact->time_s;
+    row->contact_m = impact->contact_m;
+    row->description = cp_impact_describe(impact, models[0], models[1]);
+    row->t_common_s = row->separation_s = row->shift_m = NAN;
+    cp_status status = CP_OK;
+    for (int role = 0; status == CP_OK && role < 2; role++)
+        status = fill_vehicle(impact, names, models, &configuration, role, row, error);
+    if (status != CP_OK)
+        return status;
+
+    // A crash that cannot be simulated has happened all the same: it stays, without a severity.
+    cp_error failure = {0};
+    status = simulate(models, &configuration, row, &failure);
+    if (status == CP_NO_MEMORY)
+        return cp_fail_memory(error, "crash simulation");
+    if (status != CP_OK) {
+        cp_log_warning("crash of %s and %s at %.2f s cannot be simulated: %s", names->sumo_id[0],
+                       names->sumo_id[1], impact->time_s, failure.text);
+        for (int role = 0; role < 2; role++) {
+            free(row->vehicle[role].pulse);
+            row->vehicle[role].pulse = NULL;
+        }
+    }
+
+    // OLC speaks of frontal contact only.
+    for (int role = 0; role < 2; role++)
+        if (impact->side[role] != CP_SIDE_FRONT)
+            row->vehicle[role].severity.olc = (cp_olc){
+                .status = CP_OLC_NOT_FRONT_CONTACT, .olc_g = NAN, .t1_s = NAN, .t2_s = NAN};
+    return CP_OK;
+}

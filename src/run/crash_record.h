@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RUN_CRASH_RECORD_H
+#define RUN_CRASH_RECORD_H
+
+#include "impact/impact.h"
+#include "run/fleet.h"
+#include "store/result_rows.h"
+
+/* From a confirmed impact to everything stored about the crash: configuration, description,
+ * validity, and what the surrogate says. */
+
+/* Names of the two vehicles of an impact; index 0 is role a. Borrowed. */
+typedef struct cp_impact_names {
+    const char *sumo_id[2];
+    const char *sumo_type[2];
+    bool at_fault[2];
+} cp_impact_names;
+
+/* Fill row, zeroed before; what it owns is freed by cp_result_rows_destroy. A crash the surrogate
+ * cannot simulate is kept, with OLC status simulation_failed, and logged. Errors: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *names,
+                                             const cp_fleet *fleet, cp_crash_row *row,
+                                             cp_error *error);
+
+#endif

@@ -1,0 +1,394 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run/runner.h"
+
+#include "core/log.h"
+#include "core/progress.h"
+#include "run/child.h"
+#include "run/fleet.h"
+#include "run/owner.h"
+#include "run/worker.h"
+#include "store/claim.h"
+#include "store/query.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/signalfd.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#define PATH_SIZE 4096
+#define WORKER_NAME "crashpulse-worker"
+
+// A worker and what it works on.
+typedef struct runner_job {
+    cp_child child;
+    int64_t replication_id;
+} runner_job;
+
+typedef struct runner {
+    const cp_runner_options *options;
+    cp_runner_summary *summary;
+    char worker_path[PATH_SIZE];
+    char parent[32]; /* our pid, for the workers to follow */
+    cp_owner self;
+    cp_study study;
+    cp_fleet fleet;
+    cp_plan_rows plan;
+    cp_store *store;
+    int64_t *waiting; /* replications still to start: waiting[next ...] */
+    size_t waiting_count;
+    size_t next;
+    runner_job *jobs;
+    size_t running;
+    sigset_t old_mask;
+    int signals; /* descriptor of SIGCHLD, SIGINT, SIGTERM; -1: not set up */
+    bool interrupted;
+    char first_failure[512];
+    cp_progress progress;
+} runner;
+
+// ---- preparation ---------------------------------------------------------------------------
+
+static cp_status find_worker(runner *run, cp_error *error)
+{
+    if (run->options->worker_path != NULL) {
+        snprintf(run->worker_path, PATH_SIZE, "%s", run->options->worker_path);
+    } else {
+        // Beside the running executable.
+        ssize_t length = readlink("/proc/self/exe", run->worker_path, PATH_SIZE - 1);
+        if (length < 0)
+            return cp_fail(error, CP_IO_FAILED, "/proc/self/exe: %s", strerror(errno));
+        run->worker_path[length] = '\0';
+        char *name = strrchr(run->worker_path, '/') + 1;
+        size_t room = PATH_SIZE - (size_t)(name - run->worker_path);
+        snprintf(name, room, "%s", WORKER_NAME);
+    }
+    if (access(run->worker_path, X_OK) != 0)
+        return cp_fail(error, CP_IO_FAILED, "%s: %s; it belongs beside crashpulse",
+                       run->worker_path, strerror(errno));
+    snprintf(run->parent, sizeof run->parent, "%ld", (long)getpid());
+    return cp_owner_self(&run->self, error);
+}
+
+static cp_status load_inputs(runner *run, cp_error *error)
+{
+    cp_status status = cp_study_load(run->options->study_path, &run->study, error);
+    if (status == CP_OK)
+        status = cp_fleet_load(&run->study, &run->fleet, error);
+    if (status == CP_OK)
+        status = cp_plan_create(&run->study, run->fleet.rows, &run->plan, error);
+    run->summary->replications = run->plan.replication_count;
+    return status;
+}
+
+// Let a worker start one scenario: only it can load SUMO.
+static cp_status probe_scenario(runner *run, const cp_study_scenario *scenario, cp_error *error)
+{
+    const char *arguments[] = {
+        WORKER_NAME, "--study", run->options->study_path, "--probe", scenario->name, "--parent",
+        run->parent, NULL};
+    cp_child child;
+    cp_child_end end;
+    int wait_status = 0;
+    cp_status status = cp_child_start(run->worker_path, arguments, &child, error);
+    if (status != CP_OK)
+        return status;
+    while (waitpid(child.pid, &wait_status, 0) < 0 && errno == EINTR)
+        continue;
+    cp_child_collect(&child, wait_status, &end);
+    if (end.exit_code == 0)
+        return CP_OK;
+    return cp_fail(error, end.exit_code == 2 ? CP_BAD_INPUT : CP_RUN_FAILED,
+                   "%s: scenario %s does not start: %s", run->options->study_path, scenario->name,
+                   end.reason);
+}
+
+static cp_status probe_scenarios(runner *run, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < run->study.scenario_count; k++)
+        status = probe_scenario(run, &run->study.scenarios[k], error);
+    return status;
+}
+
+// Database, claims of the dead, plan, queue: in this order, so that what a dead worker held is
+// planned again before the plan is compared.
+static cp_status prepare_store(runner *run, cp_error *error)
+{
+    size_t released = 0;
+    double done = 0.0;
+    cp_status status = cp_store_open(run->options->db_path, CP_STORE_CREATE, &run->store, error);
+    if (status == CP_OK)
+        status = cp_claim_release_dead(run->store, cp_owner_is_alive, &released, error);
+    if (status == CP_OK)
+        status = cp_plan_rows_write(run->store, &run->plan, error);
+    if (status == CP_OK)
+        status = cp_claim_waiting(run->store, &run->waiting, &run->waiting_count, error);
+    if (status == CP_OK)
+        status = cp_query_number(
+            run->store, "SELECT count(*) FROM replication WHERE status = 'done'", &done, error);
+    run->summary->done_before = (size_t)done;
+    if (released > 0)
+        cp_log_info("%zu replications of a run that ended early are run again", released);
+    return status;
+}
+
+// ---- signals -------------------------------------------------------------------------------
+
+// Signals come as data from here on: nothing happens behind our back.
+static cp_status begin_signals(runner *run, cp_error *error)
+{
+    sigset_t mask;
+    sigemptyset(&mask);
+    sigaddset(&mask, SIGCHLD);
+    sigaddset(&mask, SIGINT);
+    sigaddset(&mask, SIGTERM);
+    if (sigprocmask(SIG_BLOCK, &mask, &run->old_mask) == 0) {
+        run->signals = signalfd(-1, &mask, SFD_CLOEXEC);
+        if (run->signals >= 0)
+            return CP_OK;
+        sigprocmask(SIG_SETMASK, &run->old_mask, NULL);
+    }
+    return cp_fail(error, CP_IO_FAILED, "signals: %s", strerror(errno));
+}
+
+static void end_signals(runner *run)
+{
+    if (run->signals < 0)
+        return;
+    close(run->signals);
+    sigprocmask(SIG_SETMASK, &run->old_mask, NULL);
+}
+
+// Sleep until a child ends or somebody asks us to stop.
+static cp_status wait_signal(runner *run, cp_error *error)
+{
+    struct signalfd_siginfo info;
+    ssize_t length = read(run->signals, &info, sizeof info);
+    if (length < 0 && errno == EINTR)
+        return CP_OK;
+    if (length != sizeof info)
+        return cp_fail(error, CP_IO_FAILED, "signals: %s", strerror(errno));
+    if (info.ssi_signo != SIGCHLD)
+        run->interrupted = true;
+    return CP_OK;
+}
+
+// ---- jobs ----------------------------------------------------------------------------------
+
+static cp_status start_job(runner *run, runner_job *job, cp_error *error)
+{
+    char id[32];
+    job->replication_id = run->waiting[run->next];
+    snprintf(id, sizeof id, "%" PRId64, job->replication_id);
+    const char *arguments[] = {WORKER_NAME,
+                               "--study",
+                               run->options->study_path,
+                               "--db",
+                               run->options->db_path,
+                               "--replication",
+                               id,
+                               "--parent",
+                               run->parent,
+                               NULL};
+    cp_status status = cp_child_start(run->worker_path, arguments, &job->child, error);
+    if (status != CP_OK)
+        return status;
+    run->next++;
+    run->running++;
+    return CP_OK;
+}
+
+static cp_status start_jobs(runner *run, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < run->options->jobs; k++)
+        if (run->jobs[k].child.pid == 0 && run->next < run->waiting_count)
+            status = start_job(run, &run->jobs[k], error);
+    return status;
+}
+
+static void remember_failure(runner *run, int64_t replication_id, const char *reason)
+{
+    const cp_replication_row *row = cp_plan_find(&run->plan, replication_id);
+    run->summary->failed++;
+    if (run->first_failure[0] != '\0' || row == NULL)
+        return;
+    snprintf(run->first_failure, sizeof run->first_failure,
+             "scenario %s, variant %s, seed %" PRIu64 ": %.300s",
+             run->study.scenarios[row->scenario].name, run->study.variants[row->variant].name,
+             row->seed, reason);
+}
+
+// A worker failed: its claim, or the replication it never came to claim, is marked so.
+static cp_status record_failure(runner *run, int64_t replication_id, pid_t pid,
+                                const cp_child_end *end, cp_error *error)
+{
+    bool ended = false;
+    cp_status status =
+        cp_claim_end_of(run->store, replication_id, run->self.host, pid, CP_CLAIM_FAILED,
+                        end->wall_time_s, end->reason, &ended, error);
+    if (status == CP_OK && !ended) {
+        cp_owner worker = run->self;
+        worker.pid = pid;
+        status = cp_claim_record_failure(run->store, replication_id, &worker, end->wall_time_s,
+                                         end->reason, error);
+    }
+    remember_failure(run, replication_id, end->reason);
+    return status;
+}
+
+static cp_status finish_job(runner *run, runner_job *job, int wait_status, cp_error *error)
+{
+    cp_child_end end;
+    cp_status status = CP_OK;
+    pid_t pid = job->child.pid;
+    cp_child_collect(&job->child, wait_status, &end);
+    run->running--;
+    if (end.exit_code == 0)
+        run->summary->done_now++;
+    else if (end.exit_code == CP_WORKER_EXIT_ELSEWHERE)
+        run->summary->elsewhere++;
+    else
+        status = record_failure(run, job->replication_id, pid, &end, error);
+    return status;
+}
+
+static cp_status count_crashes(runner *run, cp_error *error)
+{
+    double crashes = 0.0;
+    cp_status status = cp_query_number(run->store, "SELECT count(*) FROM crash", &crashes, error);
+    run->summary->crashes = (size_t)crashes;
+    return status;
+}
+
+static cp_status show_progress(runner *run, cp_error *error)
+{
+    char detail[64];
+    const cp_runner_summary *summary = run->summary;
+    if (!run->options->progress)
+        return CP_OK;
+    cp_status status = count_crashes(run, error);
+    snprintf(detail, sizeof detail, "%zu crashes", summary->crashes);
+    if (status == CP_OK)
+        cp_progress_update(&run->progress, summary->done_now + summary->failed + summary->elsewhere,
+                           detail);
+    return status;
+}
+
+static cp_status finish_ended_jobs(runner *run, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < run->options->jobs; k++) {
+        int wait_status = 0;
+        runner_job *job = &run->jobs[k];
+        if (job->child.pid == 0 || waitpid(job->child.pid, &wait_status, WNOHANG) <= 0)
+            continue;
+        status = finish_job(run, job, wait_status, error);
+        if (status == CP_OK)
+            status = show_progress(run, error);
+    }
+    return status;
+}
+
+// Stop all workers and give their replications back. What one of them committed stays done.
+static void stop_jobs(runner *run)
+{
+    for (size_t k = 0; run->jobs != NULL && k < run->options->jobs; k++) {
+        runner_job *job = &run->jobs[k];
+        cp_child_end end;
+        cp_error ignored = {0};
+        bool ended = false;
+        pid_t pid = job->child.pid;
+        if (pid == 0)
+            continue;
+        cp_child_kill(&job->child, &end);
+        cp_status status =
+            cp_claim_end_of(run->store, job->replication_id, run->self.host, pid,
+                            CP_CLAIM_INTERRUPTED, end.wall_time_s, NULL, &ended, &ignored);
+        if (status != CP_OK) // the next run finds its owner dead
+            cp_log_warning("%s", ignored.text);
+        if (end.exit_code == 0)
+            run->summary->done_now++;
+        run->running--;
+    }
+}
+
+static cp_status run_jobs(runner *run, cp_error *error)
+{
+    run->jobs = calloc(run->options->jobs, sizeof *run->jobs);
+    if (run->jobs == NULL)
+        return cp_fail_memory(error, "jobs");
+    cp_status status = begin_signals(run, error);
+    if (status != CP_OK)
+        return status;
+    if (run->options->progress)
+        cp_progress_begin(&run->progress, "replications", run->waiting_count);
+    while (status == CP_OK && !run->interrupted) {
+        status = start_jobs(run, error);
+        if (status != CP_OK || run->running == 0)
+            break;
+        status = wait_signal(run, error);
+        if (status == CP_OK)
+            status = finish_ended_jobs(run, error);
+    }
+    stop_jobs(run);
+    if (run->options->progress)
+        cp_progress_end(&run->progress);
+    return status;
+}
+
+// ---- public --------------------------------------------------------------------------------
+
+static cp_status conclude(runner *run, cp_error *error)
+{
+    const cp_runner_summary *summary = run->summary;
+    cp_status status = count_crashes(run, error);
+    if (status != CP_OK)
+        return status;
+    if (run->interrupted)
+        return cp_fail(error, CP_INTERRUPTED,
+                       "interrupted with %zu of %zu replications done; the same command goes on "
+                       "from there",
+                       summary->done_before + summary->done_now, summary->replications);
+    if (summary->failed > 0)
+        return cp_fail(error, CP_RUN_FAILED,
+                       "%zu of %zu replications failed (why: table attempt, column message; the "
+                       "same command tries them again); the first: %s",
+                       summary->failed, summary->replications, run->first_failure);
+    return CP_OK;
+}
+
+cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *summary,
+                        cp_error *error)
+{
+    runner run = {.options = options, .summary = summary, .signals = -1};
+    double started_s = cp_clock_s();
+    *summary = (cp_runner_summary){0};
+    if (options->jobs < 1)
+        return cp_fail(error, CP_BAD_INPUT, "jobs must be at least 1");
+    cp_status status = load_inputs(&run, error);
+    if (status == CP_OK)
+        status = find_worker(&run, error);
+    if (status == CP_OK)
+        status = probe_scenarios(&run, error);
+    if (status == CP_OK)
+        status = prepare_store(&run, error);
+    if (status == CP_OK)
+        status = run_jobs(&run, error);
+    if (status == CP_OK)
+        status = conclude(&run, error);
+    summary->wall_time_s = cp_clock_s() - started_s;
+    end_signals(&run);
+    free(run.jobs);
+    free(run.waiting);
+    cp_store_close(run.store);
+    cp_plan_destroy(&run.plan);
+    cp_fleet_destroy(&run.fleet);
+    cp_study_destroy(&run.study);
+    return status;
+}

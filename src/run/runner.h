@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RUN_RUNNER_H
+#define RUN_RUNNER_H
+
+#include "core/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* A whole study: plan the replications, have worker processes run the missing ones, keep the
+ * database true whatever happens to them. */
+typedef struct cp_runner_options {
+    const char *study_path;
+    const char *db_path;
+    size_t jobs;             /* worker processes at a time, >= 1 */
+    const char *worker_path; /* NULL: crashpulse-worker beside the running executable */
+    bool progress;           /* show progress on stderr */
+} cp_runner_options;
+
+typedef struct cp_runner_summary {
+    size_t replications; /* planned by the study file */
+    size_t done_before;  /* finished by earlier runs */
+    size_t done_now;
+    size_t failed;    /* tried in this run without success */
+    size_t elsewhere; /* claimed by another run that is still going on */
+    size_t crashes;   /* in the database, all finished replications together */
+    double wall_time_s;
+} cp_runner_summary;
+
+/* Run what is missing of the study. Bad input (study, vehicles, SUMO configuration) is found before
+ * the database is created. A replication whose worker fails is marked failed, with SUMO's last
+ * words in attempt.message, and the others go on; the next run tries it again. SIGINT and SIGTERM
+ * end the workers and return CP_INTERRUPTED; the next run completes the study.
+ *
+ * The summary is filled as far as it is known. Errors: CP_BAD_INPUT, also for a database with
+ * finished replications of another configuration (the difference is named); CP_RUN_FAILED when
+ * replications failed; CP_INTERRUPTED; CP_STORE_FAILED, CP_BUSY, CP_IO_FAILED, CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *summary,
+                                      cp_error *error);
+
+#endif

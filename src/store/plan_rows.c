@@ -1,0 +1,326 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "store/plan_rows.h"
+
+#include "store/store_sqlite.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+int64_t cp_replication_row_id(const char *scenario, const char *variant, const char *sweep,
+                              uint64_t seed)
+{
+    char key[1024];
+    snprintf(key, sizeof key, "%s|%s|%s|%" PRIu64, scenario, variant, sweep, seed);
+    return cp_hash_row_id(key);
+}
+
+// ---- what the tables held before, and the plan, side by side -------------------------------
+
+// Copies of the present rows, to name a difference, and a place for the plan's replications.
+static const char PREPARE[] =
+    "DROP TABLE IF EXISTS temp.old_study; DROP TABLE IF EXISTS temp.old_scenario;"
+    "DROP TABLE IF EXISTS temp.old_variant; DROP TABLE IF EXISTS temp.old_vehicle_model;"
+    "DROP TABLE IF EXISTS temp.plan;"
+    "CREATE TEMP TABLE old_study AS SELECT * FROM study;"
+    "CREATE TEMP TABLE old_scenario AS SELECT * FROM scenario;"
+    "CREATE TEMP TABLE old_variant AS SELECT * FROM variant;"
+    "CREATE TEMP TABLE old_vehicle_model AS SELECT * FROM vehicle_model;"
+    "CREATE TEMP TABLE plan (id INTEGER PRIMARY KEY, scenario_id, variant_id, number, seed, hash)";
+
+// Replications with results, or being run, that the plan contradicts.
+static const char CONTRADICTION[] =
+    "SELECT s.name, v.name, r.number, p.id IS NULL, r.scenario_id, r.variant_id "
+    "FROM replication AS r LEFT JOIN temp.plan AS p ON p.id = r.id "
+    "JOIN scenario AS s ON s.id = r.scenario_id JOIN variant AS v ON v.id = r.variant_id "
+    "WHERE r.status IN ('done', 'running') AND (p.id IS NULL OR p.hash <> r.configuration_hash) "
+    "ORDER BY s.number, v.number, r.number LIMIT 1";
+
+// First difference between the old rows and the plan that concerns scenario ?1 and variant ?2.
+static const char DIFFERENCE[] =
+    "WITH d (what, was, is_now) AS ("
+    "SELECT 'seed', o.seed, n.seed FROM temp.old_study AS o, study AS n UNION ALL "
+    "SELECT 'design', o.design, n.design FROM temp.old_study AS o, study AS n UNION ALL "
+    "SELECT 'duration_s', o.duration_s, n.duration_s FROM temp.old_study AS o, study AS n UNION "
+    "ALL "
+    "SELECT 'warmup_s', o.warmup_s, n.warmup_s FROM temp.old_study AS o, study AS n UNION ALL "
+    "SELECT 'step_length_s', o.step_length_s, n.step_length_s "
+    "FROM temp.old_study AS o, study AS n UNION ALL "
+    "SELECT 'vehicles', o.vehicles, n.vehicles FROM temp.old_study AS o, study AS n UNION ALL "
+    "SELECT 'vehicle model ' || n.name, o.hash, n.hash "
+    "FROM temp.old_vehicle_model AS o JOIN vehicle_model AS n USING (name) UNION ALL "
+    "SELECT 'scenario ' || n.name || ': sumocfg', o.sumocfg, n.sumocfg "
+    "FROM temp.old_scenario AS o JOIN scenario AS n USING (id) WHERE id = ?1 UNION ALL "
+    "SELECT 'scenario ' || n.name || ': sumo_options', o.sumo_options, n.sumo_options "
+    "FROM temp.old_scenario AS o JOIN scenario AS n USING (id) WHERE id = ?1 UNION ALL "
+    "SELECT 'scenario ' || n.name || ': driver_errors', o.driver_errors, n.driver_errors "
+    "FROM temp.old_scenario AS o JOIN scenario AS n USING (id) WHERE id = ?1 UNION ALL "
+    "SELECT 'scenario ' || n.name || ': files (SHA-256)', o.files, n.files "
+    "FROM temp.old_scenario AS o JOIN scenario AS n USING (id) WHERE id = ?1 UNION ALL "
+    "SELECT 'variant ' || n.name || ': functions', o.functions, n.functions "
+    "FROM temp.old_variant AS o JOIN variant AS n USING (id) WHERE id = ?2) "
+    "SELECT what, was, is_now FROM d WHERE was IS NOT is_now LIMIT 1";
+
+static cp_status execute(cp_store *store, const char *sql, cp_error *error)
+{
+    if (sqlite3_exec(cp_store_sqlite(store), sql, NULL, NULL, NULL) != SQLITE_OK)
+        return cp_store_fail(store, error, "planning");
+    return CP_OK;
+}
+
+static const char *column_text(const cp_statement *statement, int column)
+{
+    const unsigned char *text = sqlite3_column_text(statement->handle, column);
+    return text != NULL ? (const char *)text : "";
+}
+
+// ---- writing the plan ----------------------------------------------------------------------
+
+static cp_status write_study(cp_store *store, const cp_study_row *row, cp_error *error)
+{
+    cp_statement s;
+    cp_status status = cp_statement_prepare(
+        store, "planning the study",
+        "INSERT INTO study VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12) "
+        "ON CONFLICT (id) DO UPDATE SET question = ?3, design = ?4, seed = ?5, "
+        "replications = ?6, duration_s = ?7, warmup_s = ?8, step_length_s = ?9, vehicles = ?10, "
+        "yaml = ?11, hash = ?12",
+        &s, error);
+    if (status != CP_OK)
+        return status;
+    cp_bind_integer(&s, 1, cp_hash_row_id(row->name));
+    cp_bind_text(&s, 2, row->name);
+    cp_bind_text(&s, 3, row->question);
+    cp_bind_text(&s, 4, row->design);
+    cp_bind_integer(&s, 5, (int64_t)row->seed);
+    cp_bind_integer(&s, 6, (int64_t)row->replications);
+    cp_bind_real(&s, 7, row->duration_s);
+    cp_bind_real(&s, 8, row->warmup_s);
+    cp_bind_real(&s, 9, row->step_length_s);
+    cp_bind_text(&s, 10, row->vehicles);
+    cp_bind_text(&s, 11, row->yaml);
+    cp_bind_text(&s, 12, row->hash);
+    status = cp_statement_run(&s, error);
+    cp_statement_finish(&s);
+    return status;
+}
+
+static cp_status write_scenarios(cp_store *store, const cp_plan_rows *rows, cp_error *error)
+{
+    cp_statement s;
+    cp_status status = cp_statement_prepare(
+        store, "planning a scenario",
+        "INSERT INTO scenario VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT (id) DO UPDATE SET "
+        "number = ?3, sumocfg = ?4, sumo_options = ?5, files = ?6, driver_errors = ?7",
+        &s, error);
+    for (size_t k = 0; status == CP_OK && k < rows->scenario_count; k++) {
+        const cp_scenario_row *row = &rows->scenario[k];
+        cp_bind_integer(&s, 1, cp_hash_row_id(row->name));
+        cp_bind_text(&s, 2, row->name);
+        cp_bind_integer(&s, 3, (int64_t)k);
+        cp_bind_text(&s, 4, row->sumocfg);
+        cp_bind_text(&s, 5, row->sumo_options);
+        cp_bind_text(&s, 6, row->files);
+        cp_bind_text(&s, 7, row->driver_errors);
+        status = cp_statement_run(&s, error);
+    }
+    cp_statement_finish(&s);
+    return status;
+}
+
+static cp_status write_variants(cp_store *store, const cp_plan_rows *rows, cp_error *error)
+{
+    cp_statement s;
+    cp_status status = cp_statement_prepare(
+        store, "planning a variant",
+        "INSERT INTO variant VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (id) DO UPDATE SET "
+        "number = ?3, is_baseline = ?4, functions = ?5",
+        &s, error);
+    for (size_t k = 0; status == CP_OK && k < rows->variant_count; k++) {
+        const cp_variant_row *row = &rows->variant[k];
+        cp_bind_integer(&s, 1, cp_hash_row_id(row->name));
+        cp_bind_text(&s, 2, row->name);
+        cp_bind_integer(&s, 3, (int64_t)k);
+        cp_bind_integer(&s, 4, row->is_baseline);
+        cp_bind_text(&s, 5, row->functions);
+        status = cp_statement_run(&s, error);
+    }
+    cp_statement_finish(&s);
+    return status;
+}
+
+static cp_status write_vehicle_models(cp_store *store, const cp_plan_rows *rows, cp_error *error)
+{
+    cp_statement s;
+    cp_status status = cp_statement_prepare(store, "planning a vehicle model",
+                                            "INSERT INTO vehicle_model VALUES (?1, ?2, ?3) "
+                                            "ON CONFLICT (name) DO UPDATE SET hash = ?2, yaml = ?3",
+                                            &s, error);
+    for (size_t k = 0; status == CP_OK && k < rows->vehicle_model_count; k++) {
+        const cp_vehicle_model_row *row = &rows->vehicle_model[k];
+        cp_bind_text(&s, 1, row->name);
+        cp_bind_text(&s, 2, row->hash);
+        cp_bind_text(&s, 3, row->yaml);
+        status = cp_statement_run(&s, error);
+    }
+    cp_statement_finish(&s);
+    return status;
+}
+
+static cp_status write_planned(cp_store *store, const cp_plan_rows *rows, cp_error *error)
+{
+    cp_statement s;
+    cp_status status = cp_statement_prepare(
+        store, "planning a replication (two replications with the same row id?)",
+        "INSERT INTO temp.plan VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &s, error);
+    for (size_t k = 0; status == CP_OK && k < rows->replication_count; k++) {
+        const cp_replication_row *row = &rows->replication[k];
+        cp_bind_integer(&s, 1, row->id);
+        cp_bind_integer(&s, 2, cp_hash_row_id(rows->scenario[row->scenario].name));
+        cp_bind_integer(&s, 3, cp_hash_row_id(rows->variant[row->variant].name));
+        cp_bind_integer(&s, 4, (int64_t)row->number);
+        cp_bind_integer(&s, 5, (int64_t)row->seed);
+        cp_bind_text(&s, 6, row->configuration_hash);
+        status = cp_statement_run(&s, error);
+    }
+    cp_statement_finish(&s);
+    return status;
+}
+
+// ---- contradictions ------------------------------------------------------------------------
+
+static cp_status check_same_study(cp_store *store, const cp_study_row *study, cp_error *error)
+{
+    cp_statement s;
+    int row = 0;
+    cp_status status = cp_statement_prepare(store, "reading the study",
+                                            "SELECT name FROM study WHERE name <> ?1", &s, error);
+    cp_bind_text(&s, 1, study->name);
+    if (status == CP_OK)
+        status = cp_statement_row(&s, &row, error);
+    if (status == CP_OK && row)
+        status =
+            cp_fail(error, CP_BAD_INPUT, "%s: holds the study '%s', not '%s'; use another database",
+                    cp_store_path(store), column_text(&s, 0), study->name);
+    cp_statement_finish(&s);
+    return status;
+}
+
+// What the two configurations of the scenario and variant found differ in; "" when no column tells.
+static cp_status find_difference(cp_store *store, const cp_statement *found, char *text,
+                                 size_t size, cp_error *error)
+{
+    cp_statement s;
+    int row = 0;
+    text[0] = '\0';
+    cp_status status =
+        cp_statement_prepare(store, "comparing configurations", DIFFERENCE, &s, error);
+    cp_bind_integer(&s, 1, sqlite3_column_int64(found->handle, 4));
+    cp_bind_integer(&s, 2, sqlite3_column_int64(found->handle, 5));
+    if (status == CP_OK)
+        status = cp_statement_row(&s, &row, error);
+    if (status == CP_OK && row)
+        snprintf(text, size, "%s was '%.400s', is now '%.400s'", column_text(&s, 0),
+                 column_text(&s, 1), column_text(&s, 2));
+    cp_statement_finish(&s);
+    return status;
+}
+
+static cp_status check_results_agree(cp_store *store, cp_error *error)
+{
+    cp_statement s;
+    int row = 0;
+    char difference[1024];
+    cp_status status =
+        cp_statement_prepare(store, "comparing with the plan", CONTRADICTION, &s, error);
+    if (status == CP_OK)
+        status = cp_statement_row(&s, &row, error);
+    if (status != CP_OK || !row)
+        goto done;
+
+    // A changed seed or design gives other replications altogether: then the finished one is
+    // missing from the plan, but the study's row still tells why.
+    bool missing = sqlite3_column_int(s.handle, 3);
+    status = find_difference(store, &s, difference, sizeof difference, error);
+    if (status == CP_OK && difference[0] == '\0')
+        snprintf(difference, sizeof difference,
+                 missing ? "the study file plans it no more" : "a vehicle file has changed");
+    if (status == CP_OK)
+        status = cp_fail(error, CP_BAD_INPUT,
+                         "%s: has results of another configuration (scenario %s, variant %s, "
+                         "replication %s): %s; use another database or restore the study",
+                         cp_store_path(store), column_text(&s, 0), column_text(&s, 1),
+                         column_text(&s, 2), difference);
+done:
+    cp_statement_finish(&s);
+    return status;
+}
+
+// The same row id for another natural key: too unlikely to handle, too bad to overlook.
+static cp_status check_collisions(cp_store *store, cp_error *error)
+{
+    cp_statement s;
+    int row = 0;
+    cp_status status = cp_statement_prepare(
+        store, "checking row ids",
+        "SELECT p.id FROM temp.plan AS p JOIN replication AS r ON r.id = p.id "
+        "WHERE r.scenario_id <> p.scenario_id OR r.variant_id <> p.variant_id OR r.seed <> p.seed",
+        &s, error);
+    if (status == CP_OK)
+        status = cp_statement_row(&s, &row, error);
+    if (status == CP_OK && row)
+        status = cp_fail(error, CP_STORE_FAILED,
+                         "%s: two replications have the same row id %s; change the study's seed",
+                         cp_store_path(store), column_text(&s, 0));
+    cp_statement_finish(&s);
+    return status;
+}
+
+// Replications: forget those that never ran and are planned no more, add the new ones.
+static const char EXCHANGE[] =
+    "DELETE FROM attempt WHERE replication_id IN (SELECT id FROM replication WHERE status IN "
+    "('planned', 'failed') AND id NOT IN (SELECT id FROM temp.plan));"
+    "DELETE FROM replication WHERE status IN ('planned', 'failed') AND id NOT IN "
+    "(SELECT id FROM temp.plan);"
+    "INSERT INTO replication (id, scenario_id, variant_id, number, seed, configuration_hash) "
+    "SELECT id, scenario_id, variant_id, number, seed, hash FROM temp.plan WHERE true "
+    "ON CONFLICT (id) DO UPDATE SET number = excluded.number, "
+    "configuration_hash = excluded.configuration_hash;"
+    "DELETE FROM scenario WHERE id NOT IN (SELECT scenario_id FROM replication);"
+    "DELETE FROM variant WHERE id NOT IN (SELECT variant_id FROM replication)";
+
+static cp_status write_all(cp_store *store, const cp_plan_rows *rows, cp_error *error)
+{
+    cp_status status = execute(store, PREPARE, error);
+    if (status == CP_OK)
+        status = check_same_study(store, &rows->study, error);
+    if (status == CP_OK)
+        status = write_study(store, &rows->study, error);
+    if (status == CP_OK)
+        status = write_scenarios(store, rows, error);
+    if (status == CP_OK)
+        status = write_variants(store, rows, error);
+    if (status == CP_OK)
+        status = write_vehicle_models(store, rows, error);
+    if (status == CP_OK)
+        status = write_planned(store, rows, error);
+    if (status == CP_OK)
+        status = check_collisions(store, error);
+    if (status == CP_OK)
+        status = check_results_agree(store, error);
+    if (status == CP_OK)
+        status = execute(store, EXCHANGE, error);
+    return status;
+}
+
+cp_status cp_plan_rows_write(cp_store *store, const cp_plan_rows *rows, cp_error *error)
+{
+    cp_status status = cp_store_begin(store, error);
+    if (status != CP_OK)
+        return status;
+    status = write_all(store, rows, error);
+    if (status == CP_OK)
+        status = cp_store_commit(store, error);
+    if (status != CP_OK)
+        cp_store_rollback(store);
+    return status;
+}

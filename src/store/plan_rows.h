@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STORE_PLAN_ROWS_H
+#define STORE_PLAN_ROWS_H
+
+#include "core/hash.h"
+#include "store/store.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* A planned study as rows of the database. Texts are owned by whoever fills the rows; columns are
+ * described in db/schema. */
+
+typedef struct cp_study_row {
+    char *name;
+    char *question; /* NULL when the study asks none */
+    const char *design;
+    uint64_t seed;
+    size_t replications;
+    double duration_s;
+    double warmup_s;
+    double step_length_s;
+    char *vehicles; /* JSON */
+    char *yaml;
+    char hash[CP_HASH_TEXT_SIZE];
+} cp_study_row;
+
+typedef struct cp_scenario_row {
+    char *name;
+    char *sumocfg;
+    char *sumo_options;  /* JSON */
+    char *files;         /* JSON */
+    char *driver_errors; /* JSON */
+} cp_scenario_row;
+
+typedef struct cp_variant_row {
+    char *name;
+    bool is_baseline;
+    char *functions; /* JSON */
+} cp_variant_row;
+
+typedef struct cp_vehicle_model_row {
+    char *name;
+    char hash[CP_HASH_TEXT_SIZE];
+    char *yaml;
+} cp_vehicle_model_row;
+
+typedef struct cp_replication_row {
+    int64_t id;      /* cp_replication_row_id */
+    size_t scenario; /* index into the scenarios */
+    size_t variant;
+    size_t number; /* from 0 */
+    uint64_t seed;
+    char configuration_hash[CP_HASH_TEXT_SIZE];
+} cp_replication_row;
+
+typedef struct cp_plan_rows {
+    cp_study_row study;
+    cp_scenario_row *scenario;
+    size_t scenario_count;
+    cp_variant_row *variant;
+    size_t variant_count;
+    cp_vehicle_model_row *vehicle_model;
+    size_t vehicle_model_count;
+    cp_replication_row *replication;
+    size_t replication_count;
+} cp_plan_rows;
+
+/* Row id of a replication from its natural key; sweep is "" without one. */
+int64_t cp_replication_row_id(const char *scenario, const char *variant, const char *sweep,
+                              uint64_t seed);
+
+/* Bring the database to this plan, all or nothing: new rows are added, replications that are
+ * neither planned any more nor done are dropped. Errors: CP_BAD_INPUT when the database holds
+ * another study, or finished or running replications that this plan does not have or configures
+ * otherwise (the difference is named); CP_STORE_FAILED on a collision of row ids. */
+CP_MUST_CHECK cp_status cp_plan_rows_write(cp_store *store, const cp_plan_rows *rows,
+                                           cp_error *error);
+
+#endif

@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "store/pulse_codec.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zstd.h>
+
+#define ZSTD_LEVEL 19
+#define CFC_OF_RECORD 180.0
+#define VARINT_BYTES_MAX 10
+
+const double CP_PULSE_RESOLUTION[CP_CHANNEL_COUNT] = {
+    [CP_CHANNEL_AX] = 0.1,     [CP_CHANNEL_AY] = 0.1,         [CP_CHANNEL_VX] = 0.001,
+    [CP_CHANNEL_VY] = 0.001,   [CP_CHANNEL_X] = 0.0001,       [CP_CHANNEL_Y] = 0.0001,
+    [CP_CHANNEL_YAW] = 0.0001, [CP_CHANNEL_YAW_RATE] = 0.001, [CP_CHANNEL_YAW_ACC] = 1.0};
+
+// Channels in the order they are packed, each with the channel it is the integral of (itself:
+// none): a channel comes after the one that predicts it.
+static const struct {
+    cp_pulse_channel channel;
+    cp_pulse_channel rate;
+} PACKING[CP_CHANNEL_COUNT] = {{CP_CHANNEL_AX, CP_CHANNEL_AX},
+                               {CP_CHANNEL_VX, CP_CHANNEL_AX},
+                               {CP_CHANNEL_X, CP_CHANNEL_X},
+                               {CP_CHANNEL_AY, CP_CHANNEL_AY},
+                               {CP_CHANNEL_VY, CP_CHANNEL_AY},
+                               {CP_CHANNEL_Y, CP_CHANNEL_Y},
+                               {CP_CHANNEL_YAW_ACC, CP_CHANNEL_YAW_ACC},
+                               {CP_CHANNEL_YAW_RATE, CP_CHANNEL_YAW_ACC},
+                               {CP_CHANNEL_YAW, CP_CHANNEL_YAW_RATE}};
+
+// ---- prediction ----------------------------------------------------------------------------
+
+// What sample k of a channel is expected to be from the samples before it (and the rate's up to
+// it), in steps. Integers and plain multiplications only: the same on every machine.
+static int64_t predict(int64_t *const steps[CP_CHANNEL_COUNT], size_t place, size_t k,
+                       double interval_s)
+{
+    cp_pulse_channel channel = PACKING[place].channel, rate = PACKING[place].rate;
+    const int64_t *own = steps[channel];
+    if (k == 0)
+        return 0;
+    if (rate != channel) {
+        // Trapezoid of the rate, in steps of this channel. Bounded: a hostile blob may hold
+        // anything.
+        double mean = 0.5 * ((double)steps[rate][k - 1] + (double)steps[rate][k]);
+        double gain = mean * CP_PULSE_RESOLUTION[rate] * interval_s / CP_PULSE_RESOLUTION[channel];
+        return fabs(gain) < (double)INT32_MAX ? own[k - 1] + llround(gain) : own[k - 1];
+    }
+    bool straight = channel == CP_CHANNEL_X || channel == CP_CHANNEL_Y;
+    return straight && k > 1 ? 2 * own[k - 1] - own[k - 2] : own[k - 1];
+}
+
+// Signed differences as unsigned numbers, small ones small: 0, -1, 1, -2, ... and back.
+static uint64_t fold(int64_t value)
+{
+    return ((uint64_t)value << 1) ^ (value < 0 ? UINT64_MAX : 0);
+}
+
+static int64_t unfold(uint64_t value)
+{
+    return (int64_t)(value >> 1) ^ -(int64_t)(value & 1);
+}
+
+// ---- encoding ------------------------------------------------------------------------------
+
+static cp_status quantise(const cp_pulse *pulse, int64_t *const steps[CP_CHANNEL_COUNT],
+                          cp_error *error)
+{
+    for (int c = 0; c < CP_CHANNEL_COUNT; c++) {
+        for (size_t k = 0; k < pulse->sample_count; k++) {
+            double step = pulse->channel[c][k] / CP_PULSE_RESOLUTION[c];
+            if (!(fabs(step) < (double)INT32_MAX))
+                return cp_fail(error, CP_BAD_INPUT, "pulse: %s of sample %zu cannot be stored: %g",
+                               CP_PULSE_COLUMN[c], k, pulse->channel[c][k]);
+            steps[c][k] = llround(step);
+        }
+    }
+    return CP_OK;
+}
+
+static size_t write_differences(int64_t *const steps[CP_CHANNEL_COUNT], size_t count,
+                                double interval_s, unsigned char *bytes)
+{
+    size_t used = 0;
+    for (size_t place = 0; place < CP_CHANNEL_COUNT; place++) {
+        for (size_t k = 0; k < count; k++) {
+            int64_t difference =
+                steps[PACKING[place].channel][k] - predict(steps, place, k, interval_s);
+            uint64_t rest = fold(difference);
+            while (rest >= 0x80) {
+                bytes[used++] = (unsigned char)(rest | 0x80);
+                rest >>= 7;
+            }
+            bytes[used++] = (unsigned char)rest;
+        }
+    }
+    return used;
+}
+
+static cp_status check_size(int64_t sample_count, double interval_s, cp_error *error)
+{
+    if (sample_count < 1 || sample_count > CP_PULSE_CODEC_SAMPLES_MAX)
+        return cp_fail(error, CP_BAD_INPUT, "pulse: between 1 and %d samples allowed, found %lld",
+                       CP_PULSE_CODEC_SAMPLES_MAX, (long long)sample_count);
+    if (!(interval_s > 0.0 && interval_s <= 1.0))
+        return cp_fail(error, CP_BAD_INPUT, "pulse: sample interval must be in (0, 1] s, found %g",
+                       interval_s);
+    return CP_OK;
+}
+
+// One allocation for the steps of all channels; freed through the first.
+static cp_status allocate_steps(size_t count, int64_t *steps[CP_CHANNEL_COUNT], cp_error *error)
+{
+    steps[0] = calloc(count * CP_CHANNEL_COUNT, sizeof *steps[0]);
+    if (steps[0] == NULL)
+        return cp_fail_memory(error, "pulse");
+    for (size_t c = 1; c < CP_CHANNEL_COUNT; c++)
+        steps[c] = steps[0] + c * count;
+    return CP_OK;
+}
+
+cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size, cp_error *error)
+{
+    size_t count = pulse->sample_count;
+    int64_t *steps[CP_CHANNEL_COUNT] = {NULL};
+    unsigned char *bytes = NULL;
+    void *packed = NULL;
+    cp_status status = check_size((int64_t)count, pulse->sample_interval_s, error);
+    if (status == CP_OK)
+        status = allocate_steps(count, steps, error);
+    if (status == CP_OK)
+        status = quantise(pulse, steps, error);
+    if (status != CP_OK)
+        goto done;
+
+    bytes = malloc(count * CP_CHANNEL_COUNT * VARINT_BYTES_MAX);
+    if (bytes == NULL) {
+        status = cp_fail_memory(error, "pulse");
+        goto done;
+    }
+    size_t used = write_differences(steps, count, pulse->sample_interval_s, bytes);
+    size_t room = ZSTD_compressBound(used);
+    packed = malloc(room);
+    if (packed == NULL) {
+        status = cp_fail_memory(error, "pulse");
+        goto done;
+    }
+    size_t result = ZSTD_compress(packed, room, bytes, used, ZSTD_LEVEL);
+    if (ZSTD_isError(result)) {
+        status = cp_fail(error, CP_STORE_FAILED, "pulse: zstd: %s", ZSTD_getErrorName(result));
+        goto done;
+    }
+    *blob = packed;
+    *size = result;
+    packed = NULL;
+done:
+    free(packed);
+    free(bytes);
+    free(steps[0]);
+    return status;
+}
+
+// ---- decoding ------------------------------------------------------------------------------
+
+static cp_status fail_damaged(cp_error *error, const char *what)
+{
+    return cp_fail(error, CP_BAD_INPUT, "pulse: damaged: %s", what);
+}
+
+static bool read_difference(const unsigned char *bytes, size_t size, size_t *place,
+                            int64_t *difference)
+{
+    uint64_t value = 0;
+    for (int shift = 0; shift < 63 && *place < size; shift += 7) {
+        unsigned char byte = bytes[(*place)++];
+        value |= (uint64_t)(byte & 0x7f) << shift;
+        if (byte < 0x80) {
+            *difference = unfold(value);
+            return true;
+        }
+    }
+    return false;
+}
+
+static cp_status read_differences(const unsigned char *bytes, size_t size,
+                                  int64_t *const steps[CP_CHANNEL_COUNT], size_t count,
+                                  double interval_s, cp_error *error)
+{
+    size_t at = 0;
+    for (size_t place = 0; place < CP_CHANNEL_COUNT; place++) {
+        for (size_t k = 0; k < count; k++) {
+            int64_t difference = 0;
+            if (!read_difference(bytes, size, &at, &difference))
+                return fail_damaged(error, "ends too early");
+            // The encoder writes 32-bit steps only; anything larger would soon overflow.
+            if (llabs(difference) > 8 * (int64_t)INT32_MAX)
+                return fail_damaged(error, "a value is out of range");
+            int64_t value = predict(steps, place, k, interval_s) + difference;
+            if (llabs(value) > INT32_MAX)
+                return fail_damaged(error, "a value is out of range");
+            steps[PACKING[place].channel][k] = value;
+        }
+    }
+    return at == size ? CP_OK : fail_damaged(error, "bytes are left over");
+}
+
+// Decompress into memory no larger than an encoder of so many samples could have needed.
+static cp_status decompress(const void *blob, size_t size, size_t count, unsigned char **bytes,
+                            size_t *used, cp_error *error)
+{
+    size_t room = count * CP_CHANNEL_COUNT * VARINT_BYTES_MAX;
+    unsigned long long content = ZSTD_getFrameContentSize(blob, size);
+    if (content == ZSTD_CONTENTSIZE_ERROR || content == ZSTD_CONTENTSIZE_UNKNOWN || content > room)
+        return fail_damaged(error, "not a zstd frame of the right size");
+    *bytes = malloc((size_t)content + 1);
+    if (*bytes == NULL)
+        return cp_fail_memory(error, "pulse");
+    *used = ZSTD_decompress(*bytes, (size_t)content, blob, size);
+    return ZSTD_isError(*used) ? fail_damaged(error, ZSTD_getErrorName(*used)) : CP_OK;
+}
+
+cp_status cp_pulse_decode(int codec, const void *blob, size_t size, int64_t sample_count,
+                          double sample_interval_s, cp_pulse *pulse, cp_error *error)
+{
+    int64_t *steps[CP_CHANNEL_COUNT] = {NULL};
+    unsigned char *bytes = NULL;
+    size_t used = 0, count = (size_t)sample_count;
+    *pulse = (cp_pulse){0};
+    if (codec != CP_PULSE_CODEC)
+        return cp_fail(error, CP_BAD_INPUT, "pulse: codec %d is unknown to this program", codec);
+    cp_status status = check_size(sample_count, sample_interval_s, error);
+    if (status == CP_OK)
+        status = allocate_steps(count, steps, error);
+    if (status == CP_OK)
+        status = decompress(blob, size, count, &bytes, &used, error);
+    if (status == CP_OK)
+        status = read_differences(bytes, used, steps, count, sample_interval_s, error);
+    if (status == CP_OK)
+        status = cp_pulse_create(pulse, count, sample_interval_s, error);
+    for (int c = 0; status == CP_OK && c < CP_CHANNEL_COUNT; c++)
+        for (size_t k = 0; k < count; k++)
+            pulse->channel[c][k] = (double)steps[c][k] * CP_PULSE_RESOLUTION[c];
+    free(bytes);
+    free(steps[0]);
+    return status;
+}
+
+// ---- the record worth keeping --------------------------------------------------------------
+
+cp_status cp_pulse_codec_record(const cp_pulse *raw, cp_pulse *record, cp_error *error)
+{
+    *record = (cp_pulse){0};
+    cp_pulse filtered = {0};
+    cp_status status = cp_pulse_filtered(raw, CFC_OF_RECORD, &filtered, error);
+    if (status != CP_OK)
+        return status;
+
+    // Every n-th sample; the small allowance is for intervals like 0.0005 that are not exact.
+    double ratio = CP_PULSE_CODEC_INTERVAL_S / raw->sample_interval_s;
+    size_t every = ratio >= 1.0 ? (size_t)floor(ratio * (1.0 + 1e-9)) : 1;
+    size_t count = raw->sample_count > 0 ? (raw->sample_count - 1) / every + 1 : 0;
+    status = cp_pulse_create(record, count, raw->sample_interval_s * (double)every, error);
+    for (int c = 0; status == CP_OK && c < CP_CHANNEL_COUNT; c++)
+        for (size_t k = 0; k < count; k++)
+            record->channel[c][k] = filtered.channel[c][k * every];
+    cp_pulse_destroy(&filtered);
+    return status;
+}

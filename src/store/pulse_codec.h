@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STORE_PULSE_CODEC_H
+#define STORE_PULSE_CODEC_H
+
+#include "pulse/pulse.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Pulses as small blobs. A pulse is brought to about 1 kHz, every channel is rounded to its
+ * resolution, predicted from what came before (accelerations and yaw by their last value,
+ * velocities from the accelerations, displacements in a straight line), and the differences are
+ * packed as variable-length integers and compressed with zstd. Decoding gives the rounded values
+ * back exactly. */
+
+#define CP_PULSE_CODEC 1 /* the only one so far: column pulse.codec */
+#define CP_PULSE_CODEC_INTERVAL_S 1e-3
+#define CP_PULSE_CODEC_SAMPLES_MAX 100000
+
+/* Steps of the channels in codec 1, in the units of CP_PULSE_COLUMN. */
+extern const double CP_PULSE_RESOLUTION[CP_CHANNEL_COUNT];
+
+/* The record worth keeping of a simulated pulse: accelerations through CFC180 (so that thinning
+ * out folds nothing back), then every n-th sample with n the largest that keeps the interval at or
+ * below 1 ms. The caller destroys it. */
+CP_MUST_CHECK cp_status cp_pulse_codec_record(const cp_pulse *raw, cp_pulse *record,
+                                              cp_error *error);
+
+/* Pack pulse as it is. *blob is the caller's to free. Errors: CP_NO_MEMORY, CP_BAD_INPUT for a
+ * value that is not finite or beyond 32 bits of its resolution, CP_STORE_FAILED from zstd. */
+CP_MUST_CHECK cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size,
+                                        cp_error *error);
+
+/* Unpack. codec, sample_count and sample_interval_s stand beside the blob in the database. The
+ * caller destroys the pulse. Errors: CP_BAD_INPUT for anything that no encoder wrote. */
+CP_MUST_CHECK cp_status cp_pulse_decode(int codec, const void *blob, size_t size,
+                                        int64_t sample_count, double sample_interval_s,
+                                        cp_pulse *pulse, cp_error *error);
+
+#endif

@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "store/result_rows.h"
+
+#include "crash/validity.h"
+#include "store/pulse_codec.h"
+#include "store/store_sqlite.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CRASHES_MAX (1 << 20) /* per replication: room in the row id */
+
+static const char *const ROLE[2] = {"a", "b"};
+
+// ---- collecting ----------------------------------------------------------------------------
+
+// Room for one more element, zeroed; growth by doubling at powers of two.
+static void *grow(void **array, size_t *count, size_t size)
+{
+    if ((*count & (*count - 1)) == 0) {
+        void *larger = realloc(*array, (*count == 0 ? 1 : 2 * *count) * size);
+        if (larger == NULL)
+            return NULL;
+        *array = larger;
+    }
+    void *added = (char *)*array + *count * size;
+    memset(added, 0, size);
+    (*count)++;
+    return added;
+}
+
+cp_crash_row *cp_result_rows_add_crash(cp_result_rows *rows)
+{
+    void *array = rows->crash;
+    cp_crash_row *added = grow(&array, &rows->crash_count, sizeof *added);
+    rows->crash = array;
+    return added;
+}
+
+cp_contact_row *cp_result_rows_add_contact(cp_result_rows *rows)
+{
+    void *array = rows->contact;
+    cp_contact_row *added = grow(&array, &rows->contact_count, sizeof *added);
+    rows->contact = array;
+    return added;
+}
+
+cp_sumo_collision_row *cp_result_rows_add_sumo_collision(cp_result_rows *rows)
+{
+    void *array = rows->sumo_collision;
+    cp_sumo_collision_row *added = grow(&array, &rows->sumo_collision_count, sizeof *added);
+    rows->sumo_collision = array;
+    return added;
+}
+
+void cp_result_rows_destroy(cp_result_rows *rows)
+{
+    for (size_t k = 0; k < rows->crash_count; k++) {
+        for (int v = 0; v < 2; v++) {
+            free(rows->crash[k].vehicle[v].sumo_id);
+            free(rows->crash[k].vehicle[v].sumo_type);
+            free(rows->crash[k].vehicle[v].vehicle_model);
+            free(rows->crash[k].vehicle[v].pulse);
+        }
+    }
+    for (size_t k = 0; k < rows->contact_count; k++) {
+        free(rows->contact[k].vehicle[0]);
+        free(rows->contact[k].vehicle[1]);
+    }
+    for (size_t k = 0; k < rows->sumo_collision_count; k++) {
+        free(rows->sumo_collision[k].collider);
+        free(rows->sumo_collision[k].victim);
+        free(rows->sumo_collision[k].type);
+    }
+    free(rows->crash);
+    free(rows->contact);
+    free(rows->sumo_collision);
+    free(rows->sumo_version);
+    free(rows->sumo_command_line);
+    free(rows->counters);
+    *rows = (cp_result_rows){0};
+}
+
+// ---- writing -------------------------------------------------------------------------------
+
+static const char *crash_type(const cp_crash_row *crash)
+{
+    return cp_crash_type_text(crash->vehicle[0].side, crash->vehicle[1].side);
+}
+
+static cp_status write_crash(cp_statement *s, const cp_result_rows *rows, size_t number,
+                             cp_error *error)
+{
+    const cp_crash_row *crash = &rows->crash[number];
+    char validity[CP_VALIDITY_TEXT_SIZE];
+    cp_bind_integer(s, 1, rows->replication_id * CRASHES_MAX + (int64_t)number);
+    cp_bind_integer(s, 2, rows->replication_id);
+    cp_bind_integer(s, 3, (int64_t)number);
+    cp_bind_real(s, 4, crash->time_s);
+    cp_bind_real(s, 5, crash->contact_m.x);
+    cp_bind_real(s, 6, crash->contact_m.y);
+    cp_bind_text(s, 7, crash_type(crash));
+    cp_bind_real(s, 8, crash->description.closing_speed_m_s);
+    cp_bind_real(s, 9, crash->description.lateral_offset_m);
+    cp_bind_real(s, 10, crash->description.angle_rad);
+    cp_bind_real(s, 11, crash->description.overlap_1);
+    cp_bind_text(s, 12,
+                 cp_validity_text(crash->vehicle[0].outside | crash->vehicle[1].outside, validity));
+    cp_bind_real(s, 13, crash->t_common_s);
+    cp_bind_real(s, 14, crash->separation_s);
+    cp_bind_real(s, 15, crash->shift_m);
+    return cp_statement_run(s, error);
+}
+
+static void bind_vehicle_state(cp_statement *s, const cp_crash_vehicle_row *vehicle)
+{
+    cp_bind_integer(s, 5, vehicle->side == CP_SIDE_FRONT);
+    cp_bind_text(s, 6, vehicle->sumo_id);
+    cp_bind_text(s, 7, vehicle->sumo_type);
+    cp_bind_text(s, 8, vehicle->vehicle_model);
+    cp_bind_integer(s, 9, vehicle->at_fault);
+    cp_bind_real(s, 10, vehicle->body.cog_m.x);
+    cp_bind_real(s, 11, vehicle->body.cog_m.y);
+    cp_bind_real(s, 12, vehicle->body.yaw_rad);
+    cp_bind_real(s, 13, vehicle->body.velocity_m_s.x);
+    cp_bind_real(s, 14, vehicle->body.velocity_m_s.y);
+    cp_bind_real(s, 15, vehicle->body.yaw_rate_rad_s);
+    cp_bind_real(s, 16, vehicle->speed_m_s);
+    cp_bind_real(s, 17, vehicle->length_m);
+    cp_bind_real(s, 18, vehicle->width_m);
+    cp_bind_real(s, 19, vehicle->velocity_angle_rad);
+    cp_bind_text(s, 20, cp_contact_side_text(vehicle->side));
+}
+
+static void bind_severity(cp_statement *s, const cp_crash_vehicle_row *vehicle)
+{
+    const cp_severity *severity = &vehicle->severity;
+    bool value = severity->olc.status == CP_OLC_VALUE;
+    cp_bind_real(s, 22, value ? severity->olc.olc_g : NAN);
+    cp_bind_text(s, 23, cp_olc_status_text(severity->olc.status));
+    cp_bind_real(s, 24, value ? severity->olc.t1_s : NAN);
+    cp_bind_real(s, 25, value ? severity->olc.t2_s : NAN);
+    cp_bind_real(s, 26, severity->delta_v_m_s);
+    cp_bind_real(s, 27, severity->delta_v_x_m_s);
+    cp_bind_real(s, 28, severity->delta_v_y_m_s);
+    cp_bind_real(s, 29, severity->peak_g);
+    cp_bind_real(s, 30, severity->mean_g);
+    cp_bind_real(s, 31, severity->t_v0_s);
+    cp_bind_real(s, 32, severity->max_50ms_g);
+    cp_bind_real(s, 33, severity->asi_1);
+    cp_bind_real(s, 34, severity->pdof_rad);
+    cp_bind_real(s, 35, severity->yaw_change_rad_s);
+    cp_bind_real(s, 36, vehicle->crush_m);
+    cp_bind_real(s, 37, severity->end_s);
+}
+
+static cp_status write_vehicle(cp_statement *s, const cp_result_rows *rows, size_t number, int role,
+                               cp_error *error)
+{
+    const cp_crash_row *crash = &rows->crash[number];
+    const cp_crash_vehicle_row *vehicle = &crash->vehicle[role];
+    char validity[CP_VALIDITY_TEXT_SIZE];
+    cp_bind_integer(s, 1, rows->replication_id * CRASHES_MAX + (int64_t)number);
+    cp_bind_text(s, 2, ROLE[role]);
+    cp_bind_integer(s, 3, rows->replication_id);
+    cp_bind_text(s, 4, crash_type(crash));
+    bind_vehicle_state(s, vehicle);
+    cp_bind_text(s, 21, cp_validity_text(vehicle->outside, validity));
+    bind_severity(s, vehicle);
+    return cp_statement_run(s, error);
+}
+
+static cp_status write_pulse(cp_statement *s, const cp_result_rows *rows, size_t number, int role,
+                             cp_error *error)
+{
+    const cp_crash_vehicle_row *vehicle = &rows->crash[number].vehicle[role];
+    if (vehicle->pulse == NULL)
+        return CP_OK;
+    cp_bind_integer(s, 1, rows->replication_id * CRASHES_MAX + (int64_t)number);
+    cp_bind_text(s, 2, ROLE[role]);
+    cp_bind_integer(s, 3, CP_PULSE_CODEC);
+    cp_bind_real(s, 4, vehicle->sample_interval_s);
+    cp_bind_integer(s, 5, (int64_t)vehicle->sample_count);
+    cp_bind_blob(s, 6, vehicle->pulse, vehicle->pulse_size);
+    return cp_statement_run(s, error);
+}
+
+static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_error *error)
+{
+    cp_statement crash = {0}, vehicle = {0}, pulse = {0};
+    if (rows->crash_count > CRASHES_MAX)
+        return cp_fail(error, CP_STORE_FAILED, "replication %lld has more than %d crashes",
+                       (long long)rows->replication_id, CRASHES_MAX);
+    cp_status status = cp_statement_prepare(
+        store, "writing a crash",
+        "INSERT INTO crash VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, "
+        "?15)",
+        &crash, error);
+    if (status == CP_OK)
+        status = cp_statement_prepare(
+            store, "writing a vehicle of a crash",
+            "INSERT INTO crash_vehicle SELECT ?1, ?2, scenario_id, variant_id, ?4, ?5, ?6, ?7, ?8, "
+            "?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, "
+            "?26, ?27, ?28, ?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37 FROM replication "
+            "WHERE id = ?3",
+            &vehicle, error);
+    if (status == CP_OK)
+        status = cp_statement_prepare(store, "writing a pulse",
+                                      "INSERT INTO pulse VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &pulse,
+                                      error);
+    for (size_t k = 0; status == CP_OK && k < rows->crash_count; k++) {
+        status = write_crash(&crash, rows, k, error);
+        for (int role = 0; status == CP_OK && role < 2; role++) {
+            status = write_vehicle(&vehicle, rows, k, role, error);
+            if (status == CP_OK)
+                status = write_pulse(&pulse, rows, k, role, error);
+        }
+    }
+    cp_statement_finish(&pulse);
+    cp_statement_finish(&vehicle);
+    cp_statement_finish(&crash);
+    return status;
+}
+
+static cp_status write_contacts(cp_store *store, const cp_result_rows *rows, cp_error *error)
+{
+    cp_statement s;
+    cp_status status = cp_statement_prepare(
+        store, "writing a contact", "INSERT INTO contact VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+        &s, error);
+    for (size_t k = 0; status == CP_OK && k < rows->contact_count; k++) {
+        const cp_contact_row *contact = &rows->contact[k];
+        cp_bind_integer(&s, 1, rows->replication_id);
+        cp_bind_integer(&s, 2, (int64_t)k);
+        cp_bind_real(&s, 3, contact->time_s);
+        cp_bind_real(&s, 4, contact->contact_m.x);
+        cp_bind_real(&s, 5, contact->contact_m.y);
+        cp_bind_text(&s, 6, contact->verdict);
+        cp_bind_text(&s, 7, contact->vehicle[0]);
+        cp_bind_text(&s, 8, contact->vehicle[1]);
+        status = cp_statement_run(&s, error);
+    }
+    cp_statement_finish(&s);
+    return status;
+}
+
+static cp_status write_sumo_collisions(cp_store *store, const cp_result_rows *rows, cp_error *error)
+{
+    cp_statement s;
+    cp_status status = cp_statement_prepare(
+        store, "writing a collision of SUMO",
+        "INSERT INTO sumo_collision VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)", &s, error);
+    for (size_t k = 0; status == CP_OK && k < rows->sumo_collision_count; k++) {
+        const cp_sumo_collision_row *collision = &rows->sumo_collision[k];
+        cp_bind_integer(&s, 1, rows->replication_id);
+        cp_bind_integer(&s, 2, (int64_t)k);
+        cp_bind_real(&s, 3, collision->time_s);
+        cp_bind_text(&s, 4, collision->collider);
+        cp_bind_text(&s, 5, collision->victim);
+        cp_bind_text(&s, 6, collision->type);
+        cp_bind_text(&s, 7, collision->found_as);
+        status = cp_statement_run(&s, error);
+    }
+    cp_statement_finish(&s);
+    return status;
+}
+
+// The attempt must still be ours: whoever took us for dead may have started another.
+static cp_status finish_attempt(cp_store *store, const cp_result_rows *rows, cp_error *error)
+{
+    cp_statement s;
+    cp_status status = cp_statement_prepare(
+        store, "ending a claim",
+        "UPDATE attempt SET outcome = 'done', wall_time_s = ?3 WHERE replication_id = ?1 AND "
+        "number = ?2 AND outcome = 'running'",
+        &s, error);
+    cp_bind_integer(&s, 1, rows->replication_id);
+    cp_bind_integer(&s, 2, rows->attempt);
+    cp_bind_real(&s, 3, rows->wall_time_s);
+    if (status == CP_OK)
+        status = cp_statement_run(&s, error);
+    cp_statement_finish(&s);
+    if (status == CP_OK && sqlite3_changes(cp_store_sqlite(store)) != 1)
+        status = cp_fail(error, CP_RUN_FAILED, "%s: the claim on replication %lld was taken away",
+                         cp_store_path(store), (long long)rows->replication_id);
+    return status;
+}
+
+static cp_status finish_replication(cp_store *store, const cp_result_rows *rows, cp_error *error)
+{
+    cp_statement s;
+    cp_status status = cp_statement_prepare(
+        store, "finishing a replication",
+        "UPDATE replication SET status = 'done', crashpulse_version = ?2, sumo_version = ?3, "
+        "sumo_command_line = ?4, simulated_s = ?5, vehicle_km = ?6, vehicle_h = ?7, departed = ?8, "
+        "counters = ?9 WHERE id = ?1 AND status = 'running'",
+        &s, error);
+    cp_bind_integer(&s, 1, rows->replication_id);
+    cp_bind_text(&s, 2, CRASHPULSE_VERSION);
+    cp_bind_text(&s, 3, rows->sumo_version);
+    cp_bind_text(&s, 4, rows->sumo_command_line);
+    cp_bind_real(&s, 5, rows->simulated_s);
+    cp_bind_real(&s, 6, rows->vehicle_km);
+    cp_bind_real(&s, 7, rows->vehicle_h);
+    cp_bind_integer(&s, 8, (int64_t)rows->departed);
+    cp_bind_text(&s, 9, rows->counters);
+    if (status == CP_OK)
+        status = cp_statement_run(&s, error);
+    cp_statement_finish(&s);
+    return status;
+}
+
+cp_status cp_result_rows_commit(cp_store *store, const cp_result_rows *rows, cp_error *error)
+{
+    cp_status status = cp_store_begin(store, error);
+    if (status != CP_OK)
+        return status;
+    status = finish_attempt(store, rows, error);
+    if (status == CP_OK)
+        status = write_crashes(store, rows, error);
+    if (status == CP_OK)
+        status = write_contacts(store, rows, error);
+    if (status == CP_OK)
+        status = write_sumo_collisions(store, rows, error);
+    if (status == CP_OK)
+        status = finish_replication(store, rows, error);
+    if (status == CP_OK)
+        status = cp_store_commit(store, error);
+    if (status != CP_OK)
+        cp_store_rollback(store);
+    return status;
+}
+
+// ---- reading -------------------------------------------------------------------------------
+
+cp_status cp_result_pulse_read(cp_store *store, int64_t crash_id, const char *role, cp_pulse *pulse,
+                               cp_error *error)
+{
+    cp_statement s;
+    int row = 0;
+    *pulse = (cp_pulse){0};
+    cp_status status = cp_statement_prepare(
+        store, "reading a pulse",
+        "SELECT codec, samples, sample_count, sample_interval_s FROM pulse WHERE crash_id = ?1 AND "
+        "role = ?2",
+        &s, error);
+    cp_bind_integer(&s, 1, crash_id);
+    cp_bind_text(&s, 2, role);
+    if (status == CP_OK)
+        status = cp_statement_row(&s, &row, error);
+    if (status == CP_OK && !row)
+        status = cp_fail(error, CP_BAD_INPUT, "%s: there is no pulse of vehicle %s of crash %lld",
+                         cp_store_path(store), role, (long long)crash_id);
+    if (status == CP_OK)
+        status = cp_pulse_decode(sqlite3_column_int(s.handle, 0), sqlite3_column_blob(s.handle, 1),
+                                 (size_t)sqlite3_column_bytes(s.handle, 1),
+                                 sqlite3_column_int64(s.handle, 2),
+                                 sqlite3_column_double(s.handle, 3), pulse, error);
+    cp_statement_finish(&s);
+    return status;
+}

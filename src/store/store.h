@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STORE_STORE_H
+#define STORE_STORE_H
+
+#include "core/error.h"
+
+/* The database of a study: opening, creating, migrating, transactions. SQLite in WAL mode with
+ * foreign keys on; a connection waits up to 60 s for others before it says CP_BUSY. One connection
+ * belongs to one thread and must not cross a fork. Only this folder sees SQLite. */
+typedef struct cp_store cp_store;
+
+typedef enum cp_store_mode {
+    CP_STORE_READ,  /* must exist; nothing can be written */
+    CP_STORE_WRITE, /* must exist; migrated when it is older */
+    CP_STORE_CREATE /* created when absent or empty */
+} cp_store_mode;
+
+/* Version of the schema this program writes: number of the last file of db/schema. */
+#define CP_STORE_VERSION 1
+
+/* Open path. The caller closes. Errors: CP_BAD_INPUT for a file that is missing, no database, not a
+ * database of crashpulse, or written by a newer crashpulse; CP_BUSY; CP_STORE_FAILED. After a
+ * failed creation no file is left that was not there before. */
+CP_MUST_CHECK cp_status cp_store_open(const char *path, cp_store_mode mode, cp_store **store,
+                                      cp_error *error);
+/* NULL is fine. An open transaction is rolled back. */
+void cp_store_close(cp_store *store);
+
+const char *cp_store_path(const cp_store *store);
+
+/* One writing transaction at a time. Begin takes the write lock at once, so that what is read in
+ * it stays true until the commit. Rollback without a transaction is fine. */
+CP_MUST_CHECK cp_status cp_store_begin(cp_store *store, cp_error *error);
+CP_MUST_CHECK cp_status cp_store_commit(cp_store *store, cp_error *error);
+void cp_store_rollback(cp_store *store);
+
+#endif

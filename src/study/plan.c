@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/plan.h"
+
+#include "core/rng.h"
+#include "study/scenario_files.h"
+
+#include <jansson.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Numbers as people wrote them: 15 digits give 0.1 back as 0.1.
+#define JSON_FLAGS (JSON_COMPACT | JSON_REAL_PRECISION(15))
+
+uint64_t cp_plan_seed(const cp_study *study, size_t scenario, size_t variant, size_t number)
+{
+    cp_rng_key key = cp_rng_key_text(cp_rng_key_seed(study->seed), "replication seeds");
+    key = cp_rng_key_text(key, study->scenarios[scenario].name);
+    if (study->design == CP_DESIGN_INDEPENDENT)
+        key = cp_rng_key_text(key, study->variants[variant].name);
+
+    // Steps by an odd number visit every 31-bit value once: no seed comes twice.
+    uint64_t start = cp_rng_bits(key, 0);
+    return (start + (uint64_t)number * UINT64_C(0x9e3779b1)) & UINT64_C(0x7fffffff);
+}
+
+// ---- the study in JSON ---------------------------------------------------------------------
+
+// [{"model": name, "parameters": {...}}], defaults included.
+static json_t *controls_json(const cp_control_settings *settings, size_t count,
+                             const char *name_key)
+{
+    json_t *list = json_array();
+    for (size_t k = 0; k < count; k++) {
+        const cp_control_type *type = settings[k].type;
+        json_t *parameters = json_object();
+        for (size_t p = 0; p < type->parameter_count; p++)
+            json_object_set_new(parameters, type->parameters[p].name,
+                                json_real(settings[k].parameter[p]));
+        json_array_append_new(
+            list, json_pack("{s:s, s:o}", name_key, type->name, "parameters", parameters));
+    }
+    return list;
+}
+
+// Text of a JSON value, which is given up; NULL when memory is gone.
+static char *take_text(json_t *value)
+{
+    char *text = value != NULL ? json_dumps(value, JSON_FLAGS) : NULL;
+    json_decref(value);
+    return text;
+}
+
+static char *words_text(char *const *words, size_t count)
+{
+    json_t *list = json_array();
+    for (size_t k = 0; k < count; k++)
+        json_array_append_new(list, json_string(words[k]));
+    return take_text(list);
+}
+
+static char *vehicles_text(const cp_study *study, const cp_vehicle_model_row *models)
+{
+    json_t *types = json_object();
+    for (size_t k = 1; k < study->vehicle_count; k++)
+        json_object_set_new(types, study->vehicles[k].type, json_string(models[k].name));
+    return take_text(json_pack("{s:s, s:o}", "default", models[0].name, "types", types));
+}
+
+// ---- rows ----------------------------------------------------------------------------------
+
+static cp_status fill_study(const cp_study *study, const cp_vehicle_model_row *models,
+                            cp_study_row *row, cp_error *error)
+{
+    *row = (cp_study_row){.name = strdup(study->name),
+                          .question = study->question != NULL ? strdup(study->question) : NULL,
+                          .design = cp_study_design_text(study->design),
+                          .seed = study->seed,
+                          .replications = study->replications,
+                          .duration_s = study->duration_s,
+                          .warmup_s = study->warmup_s,
+                          .step_length_s = study->step_length_s,
+                          .vehicles = vehicles_text(study, models),
+                          .yaml = strdup(study->content)};
+    cp_hash_bytes(study->content, strlen(study->content), row->hash);
+    bool complete = row->name != NULL && row->vehicles != NULL && row->yaml != NULL &&
+                    (study->question == NULL || row->question != NULL);
+    return complete ? CP_OK : cp_fail_memory(error, "study");
+}
+
+static cp_status fill_scenarios(const cp_study *study, cp_plan_rows *rows, cp_error *error)
+{
+    rows->scenario = calloc(study->scenario_count, sizeof *rows->scenario);
+    if (rows->scenario == NULL)
+        return cp_fail_memory(error, "scenarios");
+    rows->scenario_count = study->scenario_count;
+    for (size_t k = 0; k < study->scenario_count; k++) {
+        const cp_study_scenario *scenario = &study->scenarios[k];
+        cp_scenario_row *row = &rows->scenario[k];
+        *row = (cp_scenario_row){
+            .name = strdup(scenario->name),
+            .sumocfg = strdup(scenario->sumocfg),
+            .sumo_options = words_text(scenario->sumo_options, scenario->sumo_option_count),
+            .driver_errors = take_text(
+                controls_json(scenario->driver_errors, scenario->driver_error_count, "model"))};
+        if (row->name == NULL || row->sumocfg == NULL || row->sumo_options == NULL ||
+            row->driver_errors == NULL)
+            return cp_fail_memory(error, scenario->name);
+        cp_status status = cp_scenario_files_json(scenario->sumocfg_path, &row->files, error);
+        if (status != CP_OK)
+            return status;
+    }
+    return CP_OK;
+}
+
+static cp_status fill_variants(const cp_study *study, cp_plan_rows *rows, cp_error *error)
+{
+    rows->variant = calloc(study->variant_count, sizeof *rows->variant);
+    if (rows->variant == NULL)
+        return cp_fail_memory(error, "variants");
+    rows->variant_count = study->variant_count;
+    for (size_t k = 0; k < study->variant_count; k++) {
+        const cp_study_variant *variant = &study->variants[k];
+        cp_variant_row *row = &rows->variant[k];
+        *row = (cp_variant_row){.name = strdup(variant->name),
+                                .is_baseline = variant->is_baseline,
+                                .functions = take_text(controls_json(
+                                    variant->functions, variant->function_count, "function"))};
+        if (row->name == NULL || row->functions == NULL)
+            return cp_fail_memory(error, variant->name);
+    }
+    return CP_OK;
+}
+
+// Each model once; the same name for two different cars would mix them up in the database.
+static cp_status fill_vehicle_models(const cp_study *study, const cp_vehicle_model_row *models,
+                                     cp_plan_rows *rows, cp_error *error)
+{
+    rows->vehicle_model = calloc(study->vehicle_count, sizeof *rows->vehicle_model);
+    if (rows->vehicle_model == NULL)
+        return cp_fail_memory(error, "vehicles");
+    for (size_t k = 0; k < study->vehicle_count; k++) {
+        size_t known = 0;
+        while (known < rows->vehicle_model_count &&
+               strcmp(rows->vehicle_model[known].name, models[k].name) != 0)
+            known++;
+        cp_vehicle_model_row *row = &rows->vehicle_model[known];
+        if (known < rows->vehicle_model_count) {
+            if (strcmp(row->hash, models[k].hash) != 0)
+                return cp_fail(error, CP_BAD_INPUT,
+                               "%s: the name '%s' belongs to another vehicle file of the study too",
+                               study->vehicles[k].model_path, models[k].name);
+            continue;
+        }
+        *row = models[k];
+        row->name = strdup(models[k].name);
+        row->yaml = strdup(models[k].yaml);
+        rows->vehicle_model_count++;
+        if (row->name == NULL || row->yaml == NULL)
+            return cp_fail_memory(error, models[k].name);
+    }
+    return CP_OK;
+}
+
+// SHA-256 over all that the outcome of a replication depends on, as JSON.
+static cp_status hash_configuration(const cp_study *study, const cp_vehicle_model_row *models,
+                                    const cp_plan_rows *rows, cp_replication_row *replication,
+                                    cp_error *error)
+{
+    const cp_scenario_row *scenario = &rows->scenario[replication->scenario];
+    json_t *hashes = json_array();
+    for (size_t k = 0; k < study->vehicle_count; k++)
+        json_array_append_new(hashes, json_string(models[k].hash));
+    char *text = take_text(json_pack(
+        "{s:I, s:I, s:f, s:f, s:f, s:s, s:s, s:s, s:s, s:s, s:o}", "study_seed",
+        (json_int_t)study->seed, "seed", (json_int_t)replication->seed, "duration_s",
+        study->duration_s, "warmup_s", study->warmup_s, "step_length_s", study->step_length_s,
+        "sumo_options", scenario->sumo_options, "files", scenario->files, "driver_errors",
+        scenario->driver_errors, "functions", rows->variant[replication->variant].functions,
+        "vehicles", rows->study.vehicles, "vehicle_files", hashes));
+    if (text == NULL)
+        return cp_fail_memory(error, "configuration");
+    cp_hash_bytes(text, strlen(text), replication->configuration_hash);
+    free(text);
+    return CP_OK;
+}
+
+static cp_status fill_replications(const cp_study *study, const cp_vehicle_model_row *models,
+                                   cp_plan_rows *rows, cp_error *error)
+{
+    size_t total = study->scenario_count * study->variant_count * study->replications;
+    rows->replication = calloc(total, sizeof *rows->replication);
+    if (rows->replication == NULL)
+        return cp_fail_memory(error, "replications");
+    for (size_t k = 0; k < total; k++) {
+        cp_replication_row *row = &rows->replication[k];
+        row->variant = k % study->variant_count;
+        row->scenario = k / study->variant_count % study->scenario_count;
+        row->number = k / study->variant_count / study->scenario_count;
+        row->seed = cp_plan_seed(study, row->scenario, row->variant, row->number);
+        row->id = cp_replication_row_id(study->scenarios[row->scenario].name,
+                                        study->variants[row->variant].name, "", row->seed);
+        cp_status status = hash_configuration(study, models, rows, row, error);
+        if (status != CP_OK)
+            return status;
+        rows->replication_count++;
+    }
+    return CP_OK;
+}
+
+// ---- public --------------------------------------------------------------------------------
+
+cp_status cp_plan_create(const cp_study *study, const cp_vehicle_model_row *models,
+                         cp_plan_rows *rows, cp_error *error)
+{
+    *rows = (cp_plan_rows){0};
+    cp_status status = fill_study(study, models, &rows->study, error);
+    if (status == CP_OK)
+        status = fill_scenarios(study, rows, error);
+    if (status == CP_OK)
+        status = fill_variants(study, rows, error);
+    if (status == CP_OK)
+        status = fill_vehicle_models(study, models, rows, error);
+    if (status == CP_OK)
+        status = fill_replications(study, models, rows, error);
+    if (status != CP_OK)
+        cp_plan_destroy(rows);
+    return status;
+}
+
+void cp_plan_destroy(cp_plan_rows *rows)
+{
+    for (size_t k = 0; k < rows->scenario_count; k++) {
+        free(rows->scenario[k].name);
+        free(rows->scenario[k].sumocfg);
+        free(rows->scenario[k].sumo_options);
+        free(rows->scenario[k].files);
+        free(rows->scenario[k].driver_errors);
+    }
+    for (size_t k = 0; k < rows->variant_count; k++) {
+        free(rows->variant[k].name);
+        free(rows->variant[k].functions);
+    }
+    for (size_t k = 0; k < rows->vehicle_model_count; k++) {
+        free(rows->vehicle_model[k].name);
+        free(rows->vehicle_model[k].yaml);
+    }
+    free(rows->scenario);
+    free(rows->variant);
+    free(rows->vehicle_model);
+    free(rows->replication);
+    free(rows->study.name);
+    free(rows->study.question);
+    free(rows->study.vehicles);
+    free(rows->study.yaml);
+    *rows = (cp_plan_rows){0};
+}
+
+const cp_replication_row *cp_plan_find(const cp_plan_rows *rows, int64_t replication_id)
+{
+    for (size_t k = 0; k < rows->replication_count; k++)
+        if (rows->replication[k].id == replication_id)
+            return &rows->replication[k];
+    return NULL;
+}

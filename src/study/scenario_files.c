@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/scenario_files.h"
+
+#include "core/file.h"
+#include "core/hash.h"
+
+#include <ctype.h>
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// The elements of a .sumocfg that name input files (SUMO's option names with their synonyms).
+static const char *const INPUT_ELEMENT[] = {
+    "net-file",         "net",        "n", "route-files",  "route", "r",
+    "additional-files", "additional", "a", "weight-files", "w"};
+#define INPUT_ELEMENT_COUNT (sizeof INPUT_ELEMENT / sizeof INPUT_ELEMENT[0])
+
+// Cut XML comments out of text in place.
+static void remove_comments(char *text)
+{
+    char *to = text;
+    const char *from = text;
+    while (*from != '\0') {
+        if (strncmp(from, "<!--", 4) == 0) {
+            const char *end = strstr(from + 4, "-->");
+            from = end != NULL ? end + 3 : from + strlen(from);
+        } else {
+            *to++ = *from++;
+        }
+    }
+    *to = '\0';
+}
+
+// Hash of one file into the object under the name it was given.
+static cp_status add_file(json_t *files, const char *path, const char *name, cp_error *error)
+{
+    char *content = NULL;
+    size_t size = 0;
+    char hex[CP_HASH_TEXT_SIZE];
+    cp_status status = cp_file_read(path, &content, &size, error);
+    if (status != CP_OK)
+        return status;
+    // A file with zero bytes inside (compressed) is no XML text: all of it counts.
+    if (strlen(content) == size) {
+        remove_comments(content);
+        size = strlen(content);
+    }
+    cp_hash_bytes(content, size, hex);
+    free(content);
+    return json_object_set_new(files, name, json_string(hex)) == 0 ? CP_OK
+                                                                   : cp_fail_memory(error, name);
+}
+
+// The files of a comma-separated list, as seen from the .sumocfg.
+static cp_status add_list(json_t *files, const char *sumocfg_path, const char *list, size_t length,
+                          cp_error *error)
+{
+    char *names = strndup(list, length);
+    if (names == NULL)
+        return cp_fail_memory(error, sumocfg_path);
+    cp_status status = CP_OK;
+    char *rest = NULL;
+    for (char *name = strtok_r(names, ", \t\r\n", &rest); name != NULL && status == CP_OK;
+         name = strtok_r(NULL, ", \t\r\n", &rest)) {
+        char *path = cp_file_beside(sumocfg_path, name);
+        if (path == NULL)
+            status = cp_fail_memory(error, name);
+        else if (access(path, R_OK) == 0)
+            status = add_file(files, path, name, error);
+        free(path);
+    }
+    free(names);
+    return status;
+}
+
+static bool is_input(const char *element, size_t length)
+{
+    for (size_t k = 0; k < INPUT_ELEMENT_COUNT; k++)
+        if (strlen(INPUT_ELEMENT[k]) == length && strncmp(element, INPUT_ELEMENT[k], length) == 0)
+            return true;
+    return false;
+}
+
+// Value of the attribute value="..." (or v="...") within one tag; NULL when it has none.
+static const char *find_value(const char *tag, const char *tag_end, size_t *length)
+{
+    for (const char *c = tag; c < tag_end; c++) {
+        if (!isspace((unsigned char)*c))
+            continue;
+        while (c < tag_end && isspace((unsigned char)*c))
+            c++;
+        size_t name = strncmp(c, "value", 5) == 0 ? 5 : strncmp(c, "v", 1) == 0 ? 1 : 0;
+        const char *quote = c + name + 1;
+        if (name == 0 || c[name] != '=' || (*quote != '"' && *quote != '\''))
+            continue;
+        const char *end = strchr(quote + 1, *quote);
+        if (end == NULL || end > tag_end)
+            return NULL;
+        *length = (size_t)(end - quote - 1);
+        return quote + 1;
+    }
+    return NULL;
+}
+
+static cp_status add_inputs(json_t *files, const char *sumocfg_path, const char *content,
+                            cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (const char *tag = strchr(content, '<'); tag != NULL && status == CP_OK;
+         tag = strchr(tag + 1, '<')) {
+        const char *name = tag + 1;
+        size_t name_length = strcspn(name, " \t\r\n/>");
+        const char *end = strchr(tag, '>');
+        size_t length = 0;
+        if (end == NULL || !is_input(name, name_length))
+            continue;
+        const char *list = find_value(name + name_length, end, &length);
+        if (list != NULL)
+            status = add_list(files, sumocfg_path, list, length, error);
+    }
+    return status;
+}
+
+cp_status cp_scenario_files_json(const char *sumocfg_path, char **json, cp_error *error)
+{
+    char *content = NULL;
+    size_t size = 0;
+    json_t *files = json_object();
+    const char *slash = strrchr(sumocfg_path, '/');
+    cp_status status = files != NULL ? CP_OK : cp_fail_memory(error, sumocfg_path);
+    if (status == CP_OK)
+        status = cp_file_read(sumocfg_path, &content, &size, error);
+    if (status == CP_OK)
+        status = add_file(files, sumocfg_path, slash != NULL ? slash + 1 : sumocfg_path, error);
+    if (status == CP_OK) {
+        remove_comments(content);
+        status = add_inputs(files, sumocfg_path, content, error);
+    }
+    if (status == CP_OK) {
+        *json = json_dumps(files, JSON_SORT_KEYS | JSON_COMPACT);
+        if (*json == NULL)
+            status = cp_fail_memory(error, sumocfg_path);
+    }
+    free(content);
+    json_decref(files);
+    return status;
+}

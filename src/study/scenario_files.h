@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STUDY_SCENARIO_FILES_H
+#define STUDY_SCENARIO_FILES_H
+
+#include "core/error.h"
+
+/* What a scenario consists of on disk: the .sumocfg and the networks, routes and additional files
+ * it names, each with a hash, so that results are known to belong to one state of them. */
+
+/* JSON object {file as written: SHA-256}, sorted by name; the caller frees. Files that the .sumocfg
+ * names but that are not there are left out (SUMO will say so). XML comments take no part in the
+ * hash: netconvert writes the date into one. Errors: CP_BAD_INPUT when sumocfg_path cannot be read;
+ * CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_scenario_files_json(const char *sumocfg_path, char **json,
+                                               cp_error *error);
+
+#endif

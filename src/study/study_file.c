@@ -1,0 +1,453 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/study_file.h"
+
+#include "core/file.h"
+#include "core/yaml_file.h"
+#include "study/control_section.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define NAME_CHARACTERS_MAX 64
+#define KEY_PATH_SIZE 512
+
+static const char *const DESIGN_TEXT[] = {
+#define CP_STUDY_DESIGN_TEXT(name, text) [name] = text,
+    CP_STUDY_DESIGNS(CP_STUDY_DESIGN_TEXT)
+#undef CP_STUDY_DESIGN_TEXT
+};
+#define DESIGN_COUNT (sizeof DESIGN_TEXT / sizeof DESIGN_TEXT[0])
+
+const char *cp_study_design_text(cp_study_design design)
+{
+    return DESIGN_TEXT[design];
+}
+
+// ---- the file as libcyaml reads it: everything a string ------------------------------------
+
+typedef struct raw_control {
+    char *name;
+} raw_control;
+
+typedef struct raw_scenario {
+    char *name;
+    char *sumocfg;
+    char **sumo_options;
+    unsigned sumo_options_count;
+    raw_control *driver_errors;
+    unsigned driver_errors_count;
+} raw_scenario;
+
+typedef struct raw_variant {
+    char *name;
+    raw_control *functions;
+    unsigned functions_count;
+} raw_variant;
+
+typedef struct raw_vehicle_type {
+    char *type;
+    char *model;
+} raw_vehicle_type;
+
+typedef struct raw_vehicles {
+    char *standard;
+    raw_vehicle_type *types;
+    unsigned types_count;
+} raw_vehicles;
+
+typedef struct raw_study {
+    char *study;
+    char *question;
+    char *design;
+    char *baseline;
+    char *seed;
+    char *replications;
+    char *duration_s;
+    char *warmup_s;
+    char *step_length_s;
+    raw_scenario *scenarios;
+    unsigned scenarios_count;
+    raw_variant *variants;
+    unsigned variants_count;
+    raw_vehicles vehicles;
+} raw_study;
+
+#define TEXT(key, structure, member)                                                               \
+    CYAML_FIELD_STRING_PTR(key, CYAML_FLAG_POINTER, structure, member, 1, CYAML_UNLIMITED)
+#define TEXT_OPTIONAL(key, structure, member)                                                      \
+    CYAML_FIELD_STRING_PTR(key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, structure, member, 1,    \
+                           CYAML_UNLIMITED)
+#define LIST(key, structure, member, entry)                                                        \
+    CYAML_FIELD_SEQUENCE(key, CYAML_FLAG_POINTER, structure, member, &entry, 1, CYAML_UNLIMITED)
+#define LIST_OPTIONAL(key, structure, member, entry)                                               \
+    CYAML_FIELD_SEQUENCE(key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, structure, member, &entry, \
+                         0, CYAML_UNLIMITED)
+
+// The free keys of parameters are read from the key paths (control_section.c).
+static const cyaml_schema_field_t DRIVER_ERROR_FIELDS[] = {
+    TEXT("model", raw_control, name), CYAML_FIELD_IGNORE("parameters", CYAML_FLAG_OPTIONAL),
+    CYAML_FIELD_END};
+static const cyaml_schema_value_t DRIVER_ERROR = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_control, DRIVER_ERROR_FIELDS)};
+
+static const cyaml_schema_field_t FUNCTION_FIELDS[] = {
+    TEXT("function", raw_control, name), CYAML_FIELD_IGNORE("parameters", CYAML_FLAG_OPTIONAL),
+    CYAML_FIELD_END};
+static const cyaml_schema_value_t FUNCTION = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_control, FUNCTION_FIELDS)};
+
+static const cyaml_schema_value_t WORD = {
+    CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char *, 0, CYAML_UNLIMITED)};
+
+static const cyaml_schema_field_t SCENARIO_FIELDS[] = {
+    TEXT("name", raw_scenario, name), TEXT("sumocfg", raw_scenario, sumocfg),
+    LIST_OPTIONAL("sumo_options", raw_scenario, sumo_options, WORD),
+    LIST_OPTIONAL("driver_errors", raw_scenario, driver_errors, DRIVER_ERROR), CYAML_FIELD_END};
+static const cyaml_schema_value_t SCENARIO = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_scenario, SCENARIO_FIELDS)};
+
+static const cyaml_schema_field_t VARIANT_FIELDS[] = {
+    TEXT("name", raw_variant, name), LIST_OPTIONAL("functions", raw_variant, functions, FUNCTION),
+    CYAML_FIELD_END};
+static const cyaml_schema_value_t VARIANT = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_variant, VARIANT_FIELDS)};
+
+static const cyaml_schema_field_t VEHICLE_TYPE_FIELDS[] = {
+    TEXT("type", raw_vehicle_type, type), TEXT("model", raw_vehicle_type, model), CYAML_FIELD_END};
+static const cyaml_schema_value_t VEHICLE_TYPE = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_vehicle_type, VEHICLE_TYPE_FIELDS)};
+
+static const cyaml_schema_field_t VEHICLES_FIELDS[] = {
+    TEXT("default", raw_vehicles, standard),
+    LIST_OPTIONAL("types", raw_vehicles, types, VEHICLE_TYPE), CYAML_FIELD_END};
+
+static const cyaml_schema_field_t STUDY_FIELDS[] = {
+    TEXT("study", raw_study, study),
+    TEXT_OPTIONAL("question", raw_study, question),
+    TEXT("design", raw_study, design),
+    TEXT_OPTIONAL("baseline", raw_study, baseline),
+    TEXT("seed", raw_study, seed),
+    TEXT("replications", raw_study, replications),
+    TEXT("duration_s", raw_study, duration_s),
+    TEXT_OPTIONAL("warmup_s", raw_study, warmup_s),
+    TEXT_OPTIONAL("step_length_s", raw_study, step_length_s),
+    LIST("scenarios", raw_study, scenarios, SCENARIO),
+    LIST("variants", raw_study, variants, VARIANT),
+    CYAML_FIELD_MAPPING("vehicles", CYAML_FLAG_DEFAULT, raw_study, vehicles, VEHICLES_FIELDS),
+    CYAML_FIELD_END};
+static const cyaml_schema_value_t STUDY = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, raw_study, STUDY_FIELDS)};
+
+// ---- checks --------------------------------------------------------------------------------
+
+// Names become row ids, file names and words on a command line: no blanks, no '|'.
+static cp_status take_name(const cp_yaml_file *file, const char *key_path, const char *text,
+                           char **name, cp_error *error)
+{
+    size_t length = strlen(text);
+    bool good = length > 0 && length <= NAME_CHARACTERS_MAX;
+    for (const char *c = text; good && *c != '\0'; c++)
+        good = isalnum((unsigned char)*c) || strchr("_-.", *c) != NULL;
+    if (!good)
+        return cp_yaml_fail(file, error, key_path,
+                            "must be 1 to %d letters, digits, '_', '-' or '.', found '%s'",
+                            NAME_CHARACTERS_MAX, text);
+    *name = strdup(text);
+    return *name != NULL ? CP_OK : cp_fail_memory(error, key_path);
+}
+
+// A file named in the study must be readable; its path is seen from the study file.
+static cp_status take_path(const cp_yaml_file *file, const char *key_path, const char *text,
+                           char **path, cp_error *error)
+{
+    *path = cp_file_beside(file->path, text);
+    if (*path == NULL)
+        return cp_fail_memory(error, key_path);
+    if (access(*path, R_OK) != 0)
+        return cp_yaml_fail(file, error, key_path, "must be a readable file, found '%s' (%s)", text,
+                            *path);
+    return CP_OK;
+}
+
+static cp_status take_whole(const cp_yaml_file *file, const char *key_path, const char *text,
+                            double smallest, double largest, uint64_t *value, cp_error *error)
+{
+    double number = 0.0;
+    cp_status status = cp_yaml_number(file, key_path, text, smallest, largest, &number, error);
+    if (status == CP_OK && number != floor(number))
+        return cp_yaml_fail(file, error, key_path, "must be a whole number, found %s", text);
+    *value = (uint64_t)number;
+    return status;
+}
+
+static cp_status take_design(const cp_yaml_file *file, const char *text, cp_study_design *design,
+                             cp_error *error)
+{
+    for (size_t k = 0; k < DESIGN_COUNT; k++) {
+        if (strcmp(text, DESIGN_TEXT[k]) == 0) {
+            *design = (cp_study_design)k;
+            return CP_OK;
+        }
+    }
+    return cp_yaml_fail(file, error, "design", "must be paired_seeds or independent, found '%s'",
+                        text);
+}
+
+static cp_status take_head(const cp_yaml_file *file, const raw_study *raw, cp_study *study,
+                           cp_error *error)
+{
+    uint64_t replications = 0;
+    study->step_length_s = 0.05;
+    cp_status status = take_name(file, "study", raw->study, &study->name, error);
+    if (status == CP_OK && raw->question != NULL) {
+        study->question = strdup(raw->question);
+        if (study->question == NULL)
+            status = cp_fail_memory(error, "question");
+    }
+    if (status == CP_OK)
+        status = take_design(file, raw->design, &study->design, error);
+    if (status == CP_OK)
+        status = take_whole(file, "seed", raw->seed, 0, 9007199254740992.0, &study->seed, error);
+    if (status == CP_OK)
+        status = take_whole(file, "replications", raw->replications, 1, 1e6, &replications, error);
+    if (status == CP_OK)
+        status =
+            cp_yaml_number(file, "duration_s", raw->duration_s, 0, 1e6, &study->duration_s, error);
+    if (status == CP_OK && study->duration_s <= 0)
+        status = cp_yaml_fail(file, error, "duration_s", "must be > 0, found %s", raw->duration_s);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "warmup_s", raw->warmup_s, 0, 1e6, &study->warmup_s, error);
+    if (status == CP_OK && study->warmup_s >= study->duration_s)
+        status = cp_yaml_fail(file, error, "warmup_s", "must be less than duration_s, found %s",
+                              raw->warmup_s);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "step_length_s", raw->step_length_s, 0.001, 1,
+                                &study->step_length_s, error);
+    study->replications = (size_t)replications;
+    return status;
+}
+
+// ---- scenarios and variants ----------------------------------------------------------------
+
+static cp_status take_controls(const cp_yaml_file *file, cp_control_kind kind,
+                               const char *list_path, const char *name_key, const raw_control *raw,
+                               size_t count, cp_control_settings **settings, size_t *settings_count,
+                               cp_error *error)
+{
+    if (count == 0)
+        return CP_OK;
+    *settings = calloc(count, sizeof **settings);
+    if (*settings == NULL)
+        return cp_fail_memory(error, list_path);
+    for (size_t k = 0; k < count; k++) {
+        char path[KEY_PATH_SIZE];
+        snprintf(path, sizeof path, "%s[%zu]", list_path, k);
+        cp_status status = cp_control_section_read(file, kind, path, name_key, raw[k].name,
+                                                   &(*settings)[k], error);
+        if (status != CP_OK)
+            return status;
+        // Draws depend on the control's name: the same twice would act in lockstep.
+        for (size_t other = 0; other < k; other++)
+            if ((*settings)[other].type == (*settings)[k].type)
+                return cp_yaml_fail(file, error, path, "repeats '%s'", raw[k].name);
+        (*settings_count)++;
+    }
+    return CP_OK;
+}
+
+static cp_status take_words(const raw_scenario *raw, cp_study_scenario *scenario, cp_error *error)
+{
+    if (raw->sumo_options_count == 0)
+        return CP_OK;
+    scenario->sumo_options = calloc(raw->sumo_options_count, sizeof *scenario->sumo_options);
+    if (scenario->sumo_options == NULL)
+        return cp_fail_memory(error, "sumo_options");
+    for (size_t k = 0; k < raw->sumo_options_count; k++) {
+        scenario->sumo_options[k] = strdup(raw->sumo_options[k]);
+        if (scenario->sumo_options[k] == NULL)
+            return cp_fail_memory(error, "sumo_options");
+        scenario->sumo_option_count++;
+    }
+    return CP_OK;
+}
+
+static cp_status take_scenario(const cp_yaml_file *file, const raw_scenario *raw, cp_study *study,
+                               size_t index, cp_error *error)
+{
+    char path[KEY_PATH_SIZE];
+    cp_study_scenario *scenario = &study->scenarios[index];
+    snprintf(path, sizeof path, "scenarios[%zu].name", index);
+    cp_status status = take_name(file, path, raw->name, &scenario->name, error);
+    for (size_t k = 0; status == CP_OK && k < index; k++)
+        if (strcmp(study->scenarios[k].name, raw->name) == 0)
+            status =
+                cp_yaml_fail(file, error, path, "'%s' is taken by another scenario", raw->name);
+    snprintf(path, sizeof path, "scenarios[%zu].sumocfg", index);
+    if (status == CP_OK)
+        status = take_path(file, path, raw->sumocfg, &scenario->sumocfg_path, error);
+    if (status == CP_OK) {
+        scenario->sumocfg = strdup(raw->sumocfg);
+        if (scenario->sumocfg == NULL)
+            status = cp_fail_memory(error, path);
+    }
+    if (status == CP_OK)
+        status = take_words(raw, scenario, error);
+    snprintf(path, sizeof path, "scenarios[%zu].driver_errors", index);
+    if (status == CP_OK)
+        status = take_controls(file, CP_CONTROL_DRIVER_ERROR, path, "model", raw->driver_errors,
+                               raw->driver_errors_count, &scenario->driver_errors,
+                               &scenario->driver_error_count, error);
+    return status;
+}
+
+static cp_status take_scenarios(const cp_yaml_file *file, const raw_study *raw, cp_study *study,
+                                cp_error *error)
+{
+    study->scenarios = calloc(raw->scenarios_count, sizeof *study->scenarios);
+    if (study->scenarios == NULL)
+        return cp_fail_memory(error, "scenarios");
+    study->scenario_count = raw->scenarios_count;
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < raw->scenarios_count; k++)
+        status = take_scenario(file, &raw->scenarios[k], study, k, error);
+    return status;
+}
+
+static cp_status take_variant(const cp_yaml_file *file, const raw_variant *raw, cp_study *study,
+                              size_t index, cp_error *error)
+{
+    char path[KEY_PATH_SIZE];
+    cp_study_variant *variant = &study->variants[index];
+    snprintf(path, sizeof path, "variants[%zu].name", index);
+    cp_status status = take_name(file, path, raw->name, &variant->name, error);
+    for (size_t k = 0; status == CP_OK && k < index; k++)
+        if (strcmp(study->variants[k].name, raw->name) == 0)
+            status = cp_yaml_fail(file, error, path, "'%s' is taken by another variant", raw->name);
+    snprintf(path, sizeof path, "variants[%zu].functions", index);
+    if (status == CP_OK)
+        status = take_controls(file, CP_CONTROL_FUNCTION, path, "function", raw->functions,
+                               raw->functions_count, &variant->functions, &variant->function_count,
+                               error);
+    return status;
+}
+
+static cp_status take_variants(const cp_yaml_file *file, const raw_study *raw, cp_study *study,
+                               cp_error *error)
+{
+    study->variants = calloc(raw->variants_count, sizeof *study->variants);
+    if (study->variants == NULL)
+        return cp_fail_memory(error, "variants");
+    study->variant_count = raw->variants_count;
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < raw->variants_count; k++)
+        status = take_variant(file, &raw->variants[k], study, k, error);
+    if (status != CP_OK)
+        return status;
+
+    // The baseline is the one named, else the first.
+    for (size_t k = 0; k < study->variant_count; k++) {
+        cp_study_variant *variant = &study->variants[k];
+        variant->is_baseline =
+            raw->baseline != NULL ? strcmp(variant->name, raw->baseline) == 0 : k == 0;
+        if (variant->is_baseline)
+            return CP_OK;
+    }
+    return cp_yaml_fail(file, error, "baseline", "must be the name of a variant, found '%s'",
+                        raw->baseline);
+}
+
+static cp_status take_vehicles(const cp_yaml_file *file, const raw_vehicles *raw, cp_study *study,
+                               cp_error *error)
+{
+    study->vehicles = calloc((size_t)raw->types_count + 1, sizeof *study->vehicles);
+    if (study->vehicles == NULL)
+        return cp_fail_memory(error, "vehicles");
+    study->vehicle_count = (size_t)raw->types_count + 1;
+    cp_status status =
+        take_path(file, "vehicles.default", raw->standard, &study->vehicles[0].model_path, error);
+    for (size_t k = 0; status == CP_OK && k < raw->types_count; k++) {
+        char path[KEY_PATH_SIZE];
+        snprintf(path, sizeof path, "vehicles.types[%zu].model", k);
+        status =
+            take_path(file, path, raw->types[k].model, &study->vehicles[k + 1].model_path, error);
+        snprintf(path, sizeof path, "vehicles.types[%zu].type", k);
+        for (size_t other = 0; status == CP_OK && other < k; other++)
+            if (strcmp(raw->types[other].type, raw->types[k].type) == 0)
+                status = cp_yaml_fail(file, error, path, "repeats '%s'", raw->types[k].type);
+        study->vehicles[k + 1].type = strdup(raw->types[k].type);
+        if (status == CP_OK && study->vehicles[k + 1].type == NULL)
+            status = cp_fail_memory(error, path);
+    }
+    return status;
+}
+
+// ---- public --------------------------------------------------------------------------------
+
+cp_status cp_study_load(const char *path, cp_study *study, cp_error *error)
+{
+    cp_yaml_file file = {0};
+    size_t size = 0;
+    *study = (cp_study){.path = strdup(path)};
+    cp_status status = study->path != NULL ? CP_OK : cp_fail_memory(error, path);
+    if (status == CP_OK)
+        status = cp_file_read(path, &study->content, &size, error);
+    if (status == CP_OK)
+        status = cp_yaml_load(path, &STUDY, &file, error);
+    if (status != CP_OK)
+        goto done;
+    const raw_study *raw = (const raw_study *)file.data;
+    status = take_head(&file, raw, study, error);
+    if (status == CP_OK)
+        status = take_scenarios(&file, raw, study, error);
+    if (status == CP_OK)
+        status = take_variants(&file, raw, study, error);
+    if (status == CP_OK)
+        status = take_vehicles(&file, &raw->vehicles, study, error);
+    cp_yaml_close(&file);
+done:
+    if (status != CP_OK)
+        cp_study_destroy(study);
+    return status;
+}
+
+void cp_study_destroy(cp_study *study)
+{
+    for (size_t k = 0; k < study->scenario_count; k++) {
+        cp_study_scenario *scenario = &study->scenarios[k];
+        for (size_t word = 0; word < scenario->sumo_option_count; word++)
+            free(scenario->sumo_options[word]);
+        free(scenario->sumo_options);
+        free(scenario->driver_errors);
+        free(scenario->sumocfg_path);
+        free(scenario->sumocfg);
+        free(scenario->name);
+    }
+    for (size_t k = 0; k < study->variant_count; k++) {
+        free(study->variants[k].functions);
+        free(study->variants[k].name);
+    }
+    for (size_t k = 0; k < study->vehicle_count; k++) {
+        free(study->vehicles[k].type);
+        free(study->vehicles[k].model_path);
+    }
+    free(study->scenarios);
+    free(study->variants);
+    free(study->vehicles);
+    free(study->question);
+    free(study->name);
+    free(study->content);
+    free(study->path);
+    *study = (cp_study){0};
+}
+
+const cp_study_scenario *cp_study_find_scenario(const cp_study *study, const char *name)
+{
+    for (size_t k = 0; k < study->scenario_count; k++)
+        if (strcmp(study->scenarios[k].name, name) == 0)
+            return &study->scenarios[k];
+    return NULL;
+}

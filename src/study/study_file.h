@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STUDY_STUDY_FILE_H
+#define STUDY_STUDY_FILE_H
+
+#include "control/control.h"
+#include "core/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* A study as its YAML file describes it, checked and with defaults filled in. Constant once loaded.
+ * Paths are resolved as seen from the study file. */
+
+/* How the seeds of the variants relate. X(name, text in file and database). */
+#define CP_STUDY_DESIGNS(X)                                                                        \
+    X(CP_DESIGN_PAIRED_SEEDS, "paired_seeds")                                                      \
+    X(CP_DESIGN_INDEPENDENT, "independent")
+
+typedef enum cp_study_design {
+#define CP_STUDY_DESIGN_NAME(name, text) name,
+    CP_STUDY_DESIGNS(CP_STUDY_DESIGN_NAME)
+#undef CP_STUDY_DESIGN_NAME
+} cp_study_design;
+
+const char *cp_study_design_text(cp_study_design design);
+
+typedef struct cp_study_scenario {
+    char *name;          /* letters, digits, '_', '-', '.'; at most 64; unique */
+    char *sumocfg;       /* as written */
+    char *sumocfg_path;  /* resolved */
+    char **sumo_options; /* further SUMO words */
+    size_t sumo_option_count;
+    cp_control_settings *driver_errors;
+    size_t driver_error_count;
+} cp_study_scenario;
+
+typedef struct cp_study_variant {
+    char *name; /* like a scenario's */
+    bool is_baseline;
+    cp_control_settings *functions;
+    size_t function_count;
+} cp_study_variant;
+
+/* The surrogate model that vehicles of one SUMO vehicle type crash as. */
+typedef struct cp_study_vehicle {
+    char *type;       /* NULL: every type not named */
+    char *model_path; /* resolved */
+} cp_study_vehicle;
+
+typedef struct cp_study {
+    char *path;
+    char *content; /* of the file */
+    char *name;
+    char *question; /* NULL when none */
+    cp_study_design design;
+    uint64_t seed;        /* 0 ... 2^53 */
+    size_t replications;  /* per scenario and variant, 1 ... 1 000 000 */
+    double duration_s;    /* simulated time of a replication, (0, 1e6] */
+    double warmup_s;      /* default 0; not counted; < duration_s */
+    double step_length_s; /* default 0.05; [0.001, 1] */
+    cp_study_scenario *scenarios;
+    size_t scenario_count;
+    cp_study_variant *variants;
+    size_t variant_count;
+    cp_study_vehicle *vehicles; /* [0] is the default */
+    size_t vehicle_count;
+} cp_study;
+
+/* Load and check. Errors: CP_BAD_INPUT "file:line: key must be ..., found ..."; CP_NO_MEMORY. After
+ * an error the study is destroyed already. */
+CP_MUST_CHECK cp_status cp_study_load(const char *path, cp_study *study, cp_error *error);
+void cp_study_destroy(cp_study *study);
+
+/* By name; NULL when there is none. */
+const cp_study_scenario *cp_study_find_scenario(const cp_study *study, const char *name);
+
+#endif

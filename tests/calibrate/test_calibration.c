@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+// cmocka wants the four above first.
+#include <cmocka.h>
+
+#include "builders/assert_near.h"
+
+#include "calibrate/calibration.h"
+#include "calibrate/objective.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// A folder of its own for a fit's files.
+typedef struct workshop {
+    char folder[64];
+    char fit_path[128];
+} workshop;
+
+static void write_file(const char *folder, const char *name, const char *text)
+{
+    char path[256];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+// Reference values made by a car with known parameters; the fit has to find them.
+static workshop open_workshop(const char *fit_lines)
+{
+    workshop shop;
+    strcpy(shop.folder, "/tmp/calibration_XXXXXX");
+    assert_non_null(mkdtemp(shop.folder));
+    snprintf(shop.fit_path, sizeof shop.fit_path, "%s/twin.fit.yaml", shop.folder);
+    cp_vehicle_model truth = cp_vehicle_model_default();
+    truth.longitudinal_collapse_begin_kn = 110.0;
+    truth.longitudinal_collapse_end_kn = 190.0;
+    cp_reference_case cases[6];
+    for (int k = 0; k < 6; k++)
+        cases[k] = (cp_reference_case){k < 3 ? 35.0 : 56.0, 350.0 * (k % 3), 5.0 * (k % 2), 0.0};
+    double olc_g[6];
+    cp_error error = {0};
+    assert_int_equal(cp_objective_olc(&truth, cases, 6, 0.0005, 1, olc_g, &error), CP_OK);
+    char table[1024] = "speed_kmh,offset_mm,angle_deg,olc_g\n";
+    for (int k = 0; k < 6; k++)
+        snprintf(table + strlen(table), sizeof table - strlen(table), "%g,%g,%g,%.6f\n",
+                 cases[k].speed_km_h, cases[k].offset_mm, cases[k].angle_deg, olc_g[k]);
+    write_file(shop.folder, "twin.csv", table);
+    write_file(shop.folder, "base.yaml", "vehicle: base\nparameters: []\n");
+    char fit[2048];
+    snprintf(fit, sizeof fit,
+             "fit: twin\nbase: base.yaml\nreference: twin.csv\noutput: twin.yaml\nseed: 5\n%s",
+             fit_lines);
+    write_file(shop.folder, "twin.fit.yaml", fit);
+    return shop;
+}
+
+static void close_workshop(const workshop *shop)
+{
+    static const char *const NAMES[] = {"twin.csv", "base.yaml", "twin.fit.yaml", "twin.yaml",
+                                        "twin.yaml.fit.md"};
+    for (size_t k = 0; k < sizeof NAMES / sizeof *NAMES; k++) {
+        char path[256];
+        snprintf(path, sizeof path, "%s/%s", shop->folder, NAMES[k]);
+        unlink(path);
+    }
+    // Fails when a state file was left behind.
+    assert_int_equal(rmdir(shop->folder), 0);
+}
+
+static const char TWO_UNKNOWNS[] = "unknowns:\n"
+                                   "  - {name: longitudinal_collapse_begin_kn, min: 80, max: 200}\n"
+                                   "  - {name: longitudinal_collapse_end_kn, min: 120, max: 320}\n";
+
+static void a_twin_is_found_again(void **state)
+{
+    (void)state;
+    char lines[512];
+    snprintf(lines, sizeof lines,
+             "population: 10\ngenerations: 6\nlocal_evaluations: 60\nfolds: 2\n%s", TWO_UNKNOWNS);
+    workshop shop = open_workshop(lines);
+    cp_fit fit;
+    cp_calibration calibration;
+    cp_error error = {0};
+    if (cp_fit_load(shop.fit_path, &fit, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    if (cp_calibration_run(&fit, &calibration, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    assert_true(calibration.validation.mean_abs_error_g < 0.2);
+    assert_true(calibration.cross_validation.mean_abs_error_g < 0.6);
+    assert_near(calibration.model.longitudinal_collapse_begin_kn, 110.0, 15.0);
+
+    // The file written is the model found.
+    assert_int_equal(cp_calibration_write(&fit, &calibration, &error), CP_OK);
+    char path[256];
+    snprintf(path, sizeof path, "%s/twin.yaml", shop.folder);
+    cp_vehicle_model read;
+    if (cp_vehicle_model_load(path, &read, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++)
+        assert_near(cp_vehicle_model_get(&read, k), cp_vehicle_model_get(&calibration.model, k),
+                    1e-7 * fabs(cp_vehicle_model_get(&read, k)));
+    assert_near(read.calibrated_speed_min_m_s, 35.0 / 3.6, 1e-9);
+    cp_calibration_destroy(&calibration);
+    cp_fit_destroy(&fit);
+    close_workshop(&shop);
+}
+
+static void threads_do_not_change_the_result(void **state)
+{
+    (void)state;
+    cp_vehicle_model model = cp_vehicle_model_default();
+    cp_reference_case cases[7];
+    for (int k = 0; k < 7; k++)
+        cases[k] = (cp_reference_case){30.0 + 4.0 * k, 150.0 * k, 3.0 * k, 0.0};
+    double one[7], three[7];
+    cp_error error = {0};
+    assert_int_equal(cp_objective_olc(&model, cases, 7, 0.0005, 1, one, &error), CP_OK);
+    assert_int_equal(cp_objective_olc(&model, cases, 7, 0.0005, 3, three, &error), CP_OK);
+    assert_memory_equal(one, three, sizeof one);
+}
+
+static void errors_name_line_and_field(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *lines;
+        const char *words;
+    } CASES[] = {
+        {"unknowns:\n  - {name: wheels, min: 1, max: 2}\n", ":7: unknowns[0].name 'wheels'"},
+        {"unknowns:\n  - {name: mass_kg, min: 1500, max: 1400}\n", "must be above min = 1500"},
+        {"algorithm: luck\nunknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",
+         ":6: algorithm"},
+        {"population: 9.5\nunknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",
+         "must be a whole number"},
+    };
+    for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
+        workshop shop = open_workshop(CASES[k].lines);
+        cp_fit fit;
+        cp_error error = {0};
+        assert_int_equal(cp_fit_load(shop.fit_path, &fit, &error), CP_BAD_INPUT);
+        if (strstr(error.text, CASES[k].words) == NULL)
+            fail_msg("expected '%s' in: %s", CASES[k].words, error.text);
+        close_workshop(&shop);
+    }
+}
+
+static int library_begin(void **state)
+{
+    (void)state;
+    cp_error error = {0};
+    return cp_crash_library_begin(&error) == CP_OK ? 0 : -1;
+}
+
+static int library_end(void **state)
+{
+    (void)state;
+    cp_crash_library_end();
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_twin_is_found_again),
+        cmocka_unit_test(threads_do_not_change_the_result),
+        cmocka_unit_test(errors_name_line_and_field),
+    };
+    return cmocka_run_group_tests(tests, library_begin, library_end);
+}

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "core/file.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <dirent.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* A folder of its own for each test. */
+static int make_folder(void **state)
+{
+    char template[] = "test_core_file.XXXXXX";
+    char *folder = mkdtemp(template);
+    *state = folder != NULL ? strdup(folder) : NULL;
+    return *state == NULL;
+}
+
+static int remove_folder(void **state)
+{
+    int failed = rmdir(*state); // empty: nothing is left behind
+    free(*state);
+    return failed;
+}
+
+static void what_is_written_is_read_back(void **state)
+{
+    // Zero bytes inside, and longer than the first buffer.
+    char path[64];
+    snprintf(path, sizeof path, "%s/data", (char *)*state);
+    static const size_t SIZE[] = {0, 1, 65535, 65536, 65537, 300000};
+    for (size_t k = 0; k < sizeof SIZE / sizeof SIZE[0]; k++) {
+        char *out = malloc(SIZE[k] + 1), *in = NULL;
+        assert_non_null(out);
+        for (size_t b = 0; b < SIZE[k]; b++)
+            out[b] = (char)(b * 7 % 251);
+        size_t size = 99;
+        assert_int_equal(cp_file_write(path, out, SIZE[k], NULL), CP_OK);
+        assert_int_equal(cp_file_read(path, &in, &size, NULL), CP_OK);
+        assert_int_equal(size, SIZE[k]);
+        assert_memory_equal(in, out, size);
+        assert_int_equal(in[size], '\0');
+        free(in);
+        free(out);
+    }
+    unlink(path);
+}
+
+static void a_missing_file_and_a_folder_are_bad_input(void **state)
+{
+    char path[64], *content = NULL;
+    size_t size;
+    cp_error error = {0};
+    snprintf(path, sizeof path, "%s/none", (char *)*state);
+    assert_int_equal(cp_file_read(path, &content, &size, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, path));
+    assert_non_null(strstr(error.text, "No such file"));
+    assert_int_equal(cp_file_read(*state, &content, &size, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "directory"));
+    assert_null(content);
+}
+
+static void a_failed_write_leaves_nothing_behind(void **state)
+{
+    char path[64];
+    cp_error error = {0};
+    snprintf(path, sizeof path, "%s/no/where", (char *)*state);
+    assert_int_equal(cp_file_write(path, "x", 1, &error), CP_IO_FAILED);
+    assert_non_null(strstr(error.text, path));
+
+    // The target is a folder: the rename fails, and the neighbour is taken away again.
+    snprintf(path, sizeof path, "%s/folder", (char *)*state);
+    assert_int_equal(mkdir(path, 0777), 0);
+    assert_int_equal(cp_file_write(path, "x", 1, &error), CP_IO_FAILED);
+    rmdir(path);
+    DIR *folder = opendir(*state);
+    assert_non_null(folder);
+    for (struct dirent *entry; (entry = readdir(folder)) != NULL;)
+        assert_int_equal(entry->d_name[0], '.');
+    closedir(folder);
+}
+
+static void neighbours_are_found_beside_the_base(void **state)
+{
+    (void)state;
+    static const char *const CASE[][3] = {{"a/study.yaml", "x.cfg", "a/x.cfg"},
+                                          {"a/study.yaml", "../b.cfg", "a/../b.cfg"},
+                                          {"/r/a/study.yaml", "x/y.cfg", "/r/a/x/y.cfg"},
+                                          {"study.yaml", "x.cfg", "x.cfg"},
+                                          {"/study.yaml", "x.cfg", "/x.cfg"},
+                                          {"a/study.yaml", "/etc/x.cfg", "/etc/x.cfg"}};
+    for (size_t k = 0; k < sizeof CASE / sizeof CASE[0]; k++) {
+        char *beside = cp_file_beside(CASE[k][0], CASE[k][1]);
+        assert_string_equal(beside, CASE[k][2]);
+        free(beside);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(what_is_written_is_read_back, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(a_missing_file_and_a_folder_are_bad_input, make_folder,
+                                        remove_folder),
+        cmocka_unit_test_setup_teardown(a_failed_write_leaves_nothing_behind, make_folder,
+                                        remove_folder),
+        cmocka_unit_test(neighbours_are_found_beside_the_base),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

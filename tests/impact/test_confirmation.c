@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "impact/confirmation.h"
+
+#include "core/units.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "builders/assert_near.h"
+
+static cp_touching_body car(double front_x_m, double front_y_m, double yaw_rad, double speed_m_s)
+{
+    cp_vec2 along = cp_vec2_heading(yaw_rad);
+    return (cp_touching_body){
+        .rectangle = {{front_x_m - 2.0 * along.x, front_y_m - 2.0 * along.y}, yaw_rad, 4.0, 2.0},
+        .front_velocity_m_s = cp_vec2_scale(along, speed_m_s)};
+}
+
+static bool is_crash(cp_touching_body a, cp_touching_body b)
+{
+    cp_touching_body body[2] = {a, b};
+    cp_touch touch = cp_touch_of(body);
+    return cp_contact_is_crash(body, &touch);
+}
+
+static void a_rear_impact_counts_from_400_mm_in_half_a_second(void **state)
+{
+    (void)state;
+    for (double ahead_m_s = 0.0; ahead_m_s < 30.0; ahead_m_s += 7.0) {
+        assert_true(is_crash(car(0, 0, 0, ahead_m_s + 0.81), car(4, 0, 0, ahead_m_s)));
+        assert_false(is_crash(car(0, 0, 0, ahead_m_s + 0.79), car(4, 0, 0, ahead_m_s)));
+    }
+}
+
+static void front_on_front_counts_from_a_tenth_of_the_width(void **state)
+{
+    (void)state;
+    assert_true(is_crash(car(0, 0, 0, 0.1), car(0, 1.79, CP_PI, 0.1)));
+    assert_false(is_crash(car(0, 0, 0, 0.1), car(0, 1.81, CP_PI, 0.1)));
+    // Fast but thin: parted by less than 0.4 m sideways at any time.
+    assert_false(is_crash(car(0, 0, 0, 20), car(0, 1.81, CP_PI, 20)));
+    // Thin and turning in: goes deep.
+    cp_touching_body turning = car(0, 1.81, CP_PI, 10);
+    turning.yaw_rate_rad_s = 3.0;
+    assert_true(is_crash(car(0, 0, 0, 10), turning));
+}
+
+/* A car standing obliquely, its flank to the other, whose highest corner reaches `reach_m` into the
+ * way of one that drives east at 15 m/s, just touching it. */
+static bool clip_is_crash(double reach_m)
+{
+    cp_touching_body waiting = car(0.0, 0.0, CP_PI / 2 - 0.6, 0.0), passing = car(0, 0, 0, 15.0);
+    cp_vec2 corners_m[4];
+    cp_rectangle_corners(&waiting.rectangle, corners_m);
+    double highest_m = -INFINITY;
+    for (int k = 0; k < 4; k++)
+        highest_m = fmax(highest_m, corners_m[k].y);
+    passing.rectangle.centre_m = (cp_vec2){-20.0, highest_m - reach_m + 1.0};
+    for (int k = 0; k < 1000; k++)
+        passing.rectangle.centre_m.x +=
+            cp_rectangle_separation(&passing.rectangle, &waiting.rectangle);
+    assert_near(cp_rectangle_separation(&passing.rectangle, &waiting.rectangle), 0.0, 1e-9);
+    return is_crash(passing, waiting);
+}
+
+static void a_clipped_waiting_car_is_a_graze(void **state)
+{
+    (void)state;
+    assert_false(clip_is_crash(0.2));
+    assert_false(clip_is_crash(0.38));
+    assert_true(clip_is_crash(0.42));
+    assert_true(clip_is_crash(1.5));
+}
+
+static void a_constant_turn_follows_its_circle(void **state)
+{
+    (void)state;
+    cp_touching_body body = car(5, 0, CP_PI / 2, 10.0);
+    body.yaw_rate_rad_s = 2.0; // radius 5 about the origin
+    for (double time_s = 0.0; time_s < 3.0; time_s += 0.1) {
+        cp_rectangle later = cp_touching_body_later(&body, time_s);
+        cp_vec2 front =
+            cp_vec2_add(later.centre_m, cp_vec2_scale(cp_vec2_heading(later.yaw_rad), 2.0));
+        assert_near(front.x, 5.0 * cos(2.0 * time_s), 1e-12);
+        assert_near(front.y, 5.0 * sin(2.0 * time_s), 1e-12);
+        assert_near(cp_wrap_angle(later.yaw_rad - CP_PI / 2 - 2.0 * time_s), 0.0, 1e-12);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_rear_impact_counts_from_400_mm_in_half_a_second),
+        cmocka_unit_test(front_on_front_counts_from_a_tenth_of_the_width),
+        cmocka_unit_test(a_clipped_waiting_car_is_a_graze),
+        cmocka_unit_test(a_constant_turn_follows_its_circle),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

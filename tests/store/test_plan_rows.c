@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "store/fixture.h"
+
+#define DONE "SELECT count(*) FROM replication WHERE status = 'done'"
+
+static void same_plan_again_changes_nothing(void **state)
+{
+    small_plan plan;
+    cp_error error = {0};
+    cp_store *store = open_planned(*state, &plan);
+    finish_replication_with(store, &plan, 0, NULL, 0);
+    assert_ok(cp_plan_rows_write(store, &plan.rows, &error), &error);
+    assert_true(number_of(store, "SELECT count(*) FROM replication") == 4);
+    assert_true(number_of(store, DONE) == 1);
+    cp_store_close(store);
+}
+
+static void plan_can_grow_and_shrink_where_nothing_is_done(void **state)
+{
+    small_plan plan;
+    cp_error error = {0};
+    cp_store *store = open_planned(*state, &plan);
+    finish_replication_with(store, &plan, 0, NULL, 0);
+    plan.rows.replication_count = 2;
+    assert_ok(cp_plan_rows_write(store, &plan.rows, &error), &error);
+    assert_true(number_of(store, "SELECT count(*) FROM replication") == 2);
+    plan.rows.replication_count = 4;
+    assert_ok(cp_plan_rows_write(store, &plan.rows, &error), &error);
+    assert_true(number_of(store, "SELECT count(*) FROM replication") == 4);
+    assert_true(number_of(store, DONE) == 1);
+    cp_store_close(store);
+}
+
+static void contradiction_is_refused_by_name(void **state)
+{
+    small_plan plan;
+    cp_error error = {0};
+    cp_store *store = open_planned(*state, &plan);
+    finish_replication_with(store, &plan, 1, NULL, 0);
+    plan.variant[1].functions = "[{\"function\":\"other\"}]";
+    strcpy(plan.replication[1].configuration_hash, "changed");
+    assert_int_equal(cp_plan_rows_write(store, &plan.rows, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "variant aeb: functions was '[{\"function\":\"aeb\"}]'"));
+    assert_non_null(strstr(error.text, "is now '[{\"function\":\"other\"}]'"));
+
+    // Refused means untouched.
+    assert_true(number_of(store, "SELECT count(*) FROM variant WHERE functions LIKE '%other%'") ==
+                0);
+    cp_store_close(store);
+}
+
+static void other_seed_is_refused_by_name(void **state)
+{
+    small_plan plan;
+    cp_error error = {0};
+    cp_store *store = open_planned(*state, &plan);
+    finish_replication_with(store, &plan, 0, NULL, 0);
+    plan.rows.study.seed = 8;
+    for (size_t k = 0; k < 4; k++) {
+        plan.replication[k].seed += 1000;
+        plan.replication[k].id = cp_replication_row_id("crossing", plan.variant[k % 2].name, "",
+                                                       plan.replication[k].seed);
+    }
+    assert_int_equal(cp_plan_rows_write(store, &plan.rows, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "seed was '7', is now '8'"));
+    cp_store_close(store);
+}
+
+static void finished_replications_cannot_be_dropped(void **state)
+{
+    small_plan plan;
+    cp_error error = {0};
+    cp_store *store = open_planned(*state, &plan);
+    finish_replication_with(store, &plan, 3, NULL, 0);
+    plan.rows.replication_count = 2;
+    assert_int_equal(cp_plan_rows_write(store, &plan.rows, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "plans it no more"));
+    assert_true(number_of(store, DONE) == 1);
+    cp_store_close(store);
+}
+
+static void another_study_is_refused(void **state)
+{
+    small_plan plan;
+    cp_error error = {0};
+    cp_store *store = open_planned(*state, &plan);
+    plan.rows.study.name = "large";
+    assert_int_equal(cp_plan_rows_write(store, &plan.rows, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "holds the study 'small', not 'large'"));
+    cp_store_close(store);
+}
+
+static void id_collision_is_an_error(void **state)
+{
+    small_plan plan;
+    cp_error error = {0};
+    cp_store *store = open_planned(*state, &plan);
+    plan.replication[0].seed = 12345; // another natural key under the same id
+    assert_int_equal(cp_plan_rows_write(store, &plan.rows, &error), CP_STORE_FAILED);
+    plan.replication[1].id = plan.replication[2].id;
+    assert_int_equal(cp_plan_rows_write(store, &plan.rows, &error), CP_STORE_FAILED);
+    cp_store_close(store);
+}
+
+static void row_ids_are_fixed_for_good(void **state)
+{
+    (void)state;
+    // printf 'crossing|aeb||100' | sha256sum, first 42 bits
+    FILE *shell = popen("printf 'crossing|aeb||100' | sha256sum", "r");
+    char hex[12] = "";
+    assert_non_null(shell);
+    assert_non_null(fgets(hex, sizeof hex, shell));
+    while (fgetc(shell) != EOF)
+        continue;
+    assert_int_equal(pclose(shell), 0);
+    assert_true(cp_replication_row_id("crossing", "aeb", "", 100) ==
+                (int64_t)(strtoull(hex, NULL, 16) >> 2));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(same_plan_again_changes_nothing, fixture_begin,
+                                        fixture_end),
+        cmocka_unit_test_setup_teardown(plan_can_grow_and_shrink_where_nothing_is_done,
+                                        fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(contradiction_is_refused_by_name, fixture_begin,
+                                        fixture_end),
+        cmocka_unit_test_setup_teardown(other_seed_is_refused_by_name, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(finished_replications_cannot_be_dropped, fixture_begin,
+                                        fixture_end),
+        cmocka_unit_test_setup_teardown(another_study_is_refused, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(id_collision_is_an_error, fixture_begin, fixture_end),
+        cmocka_unit_test(row_ids_are_fixed_for_good),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

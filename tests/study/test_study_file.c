@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/fixture.h"
+
+static void reads_everything(void **state)
+{
+    const fixture *f = *state;
+    cp_study study;
+    cp_error error = {0};
+    char path[192];
+    assert_ok(cp_study_load(f->study, &study, &error), &error);
+    assert_string_equal(study.name, "demo");
+    assert_string_equal(study.question, "Does it help?");
+    assert_int_equal(study.design, CP_DESIGN_PAIRED_SEEDS);
+    assert_int_equal(study.seed, 20261122);
+    assert_int_equal(study.replications, 3);
+    assert_true(study.duration_s == 900 && study.warmup_s == 60 && study.step_length_s == 0.05);
+
+    assert_int_equal(study.scenario_count, 1);
+    const cp_study_scenario *scenario = cp_study_find_scenario(&study, "left_turn");
+    assert_ptr_equal(scenario, &study.scenarios[0]);
+    snprintf(path, sizeof path, "%s/a.sumocfg", f->folder);
+    assert_string_equal(scenario->sumocfg_path, path);
+    assert_int_equal(scenario->sumo_option_count, 2);
+    assert_string_equal(scenario->sumo_options[1], "0.5");
+    assert_int_equal(scenario->driver_error_count, 1);
+    assert_string_equal(scenario->driver_errors[0].type->name, "failed_to_see");
+    assert_true(scenario->driver_errors[0].parameter[0] == 0.25);
+
+    assert_int_equal(study.variant_count, 2);
+    assert_true(study.variants[0].is_baseline && !study.variants[1].is_baseline);
+    assert_int_equal(study.variants[0].function_count, 0);
+    const cp_control_settings *aeb = &study.variants[1].functions[0];
+    for (size_t k = 0; k < aeb->type->parameter_count; k++) {
+        const cp_control_parameter *parameter = &aeb->type->parameters[k];
+        double expected = parameter->standard;
+        if (strcmp(parameter->name, "ttc_s") == 0)
+            expected = 1.5;
+        if (strcmp(parameter->name, "deceleration_m_s2") == 0)
+            expected = 7;
+        assert_true(aeb->parameter[k] == expected);
+    }
+
+    assert_int_equal(study.vehicle_count, 2);
+    assert_null(study.vehicles[0].type);
+    assert_string_equal(study.vehicles[1].type, "van");
+    cp_study_destroy(&study);
+}
+
+static void baseline_can_be_named(void **state)
+{
+    const fixture *f = *state;
+    cp_study study;
+    cp_error error = {0};
+    char *text = study_with("seed: 20261122\n", "seed: 1\nbaseline: aeb\n");
+    write_text(f, "study.yaml", text);
+    free(text);
+    assert_ok(cp_study_load(f->study, &study, &error), &error);
+    assert_true(!study.variants[0].is_baseline && study.variants[1].is_baseline);
+    cp_study_destroy(&study);
+}
+
+/* What is wrong, and what the message must hold: line and key. */
+static const struct {
+    const char *old;
+    const char *replacement;
+    const char *message;
+} BAD[] = {
+    {"ttc_s: 1.5", "ttc_s: -1",
+     "study.yaml:22: variants[1].functions[0].parameters.ttc_s must be between 0.1 and 5, found "
+     "-1"},
+    {"ttc_s: 1.5", "ttc_s: nan", "study.yaml:22: variants[1].functions[0].parameters.ttc_s"},
+    {"ttc_s: 1.5", "ttc_s: 1.5garbage", "must be a number, found '1.5garbage'"},
+    {"ttc_s: 1.5", "ttc_s: [1, 2]", "study.yaml:22: variants[1].functions[0].parameters.ttc_s"},
+    {"ttc_s: 1.5", "ttcs: 1.5", "parameters.ttcs is not a parameter of aeb; it has"},
+    {"deceleration_m_s2: 7", "ttc_s: 2", "parameters.ttc_s is given twice"},
+    {"parameters: {probability_1: 0.25}", "parameters: 3",
+     "study.yaml:14: scenarios[0].driver_errors[0].parameters must be a mapping"},
+    {"parameters: {probability_1: 0.25}", "parameters: [3]", "must be a mapping"},
+    {"function: aeb", "function: abs",
+     "study.yaml:20: variants[1].functions[0].function must be one of"},
+    {"model: failed_to_see", "model: aeb", "study.yaml:13: scenarios[0].driver_errors[0].model"},
+    {"duration_s: 900", "duration_s: 0", "study.yaml:6: duration_s must be > 0, found 0"},
+    {"duration_s: 900", "duration_s: inf", "study.yaml:6: duration_s"},
+    {"duration_s: 900", "duration_s: 15 min", "study.yaml:6: duration_s must be a number"},
+    {"warmup_s: 60", "warmup_s: 900", "study.yaml:7: warmup_s must be less than duration_s"},
+    {"replications: 3", "replications: 2.5", "study.yaml:5: replications must be a whole number"},
+    {"replications: 3", "replications: 0", "study.yaml:5: replications"},
+    {"seed: 20261122", "seed: -1", "study.yaml:4: seed"},
+    {"design: paired_seeds", "design: crossover",
+     "study.yaml:3: design must be paired_seeds or independent, found 'crossover'"},
+    {"name: left_turn", "name: left turn", "study.yaml:9: scenarios[0].name must be"},
+    {"- name: aeb", "- name: baseline", "study.yaml:18: variants[1].name 'baseline' is taken"},
+    {"sumocfg: a.sumocfg", "sumocfg: b.sumocfg",
+     "study.yaml:10: scenarios[0].sumocfg must be a readable file, found 'b.sumocfg'"},
+    {"default: car.yaml", "default: lorry.yaml",
+     "study.yaml:25: vehicles.default must be a readable file"},
+    {"seed: 20261122", "seed: 1\nbaseline: none", "study.yaml:5: baseline must be the name of"},
+    // Structure: libcyaml's part.
+    {"warmup_s: 60", "warmup: 60", "study.yaml:7: Unexpected key: warmup"},
+    {"seed: 20261122\n", "", "Missing required mapping field: seed"},
+    {"warmup_s: 60", "duration_s: 60", "study.yaml:7:"},
+    {"design: paired_seeds", "design: [paired_seeds", "study.yaml:"},
+    {"scenarios:\n", "scenarios: []\nother:\n", "study.yaml:8:"},
+};
+
+static void bad_studies_are_told_by_line(void **state)
+{
+    const fixture *f = *state;
+    for (size_t k = 0; k < sizeof BAD / sizeof BAD[0]; k++) {
+        cp_study study;
+        cp_error error = {0};
+        char *text = study_with(BAD[k].old, BAD[k].replacement);
+        write_text(f, "study.yaml", text);
+        free(text);
+        cp_status status = cp_study_load(f->study, &study, &error);
+        if (status != CP_BAD_INPUT || strstr(error.text, BAD[k].message) == NULL)
+            fail_msg("'%s': expected '%s', got %s '%s'", BAD[k].replacement, BAD[k].message,
+                     cp_status_text(status), error.text);
+        assert_null(study.name);
+    }
+}
+
+static void missing_and_empty_files(void **state)
+{
+    const fixture *f = *state;
+    cp_study study;
+    cp_error error = {0};
+    assert_int_equal(cp_study_load("no/such/study.yaml", &study, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "no/such/study.yaml"));
+    write_text(f, "study.yaml", "");
+    assert_int_equal(cp_study_load(f->study, &study, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "empty"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(reads_everything, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(baseline_can_be_named, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(bad_studies_are_told_by_line, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(missing_and_empty_files, fixture_begin, fixture_end),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -15,7 +15,7 @@ cp_outline cp_barrier_outline(const cp_barrier *barrier, cp_pose pose)
     cp_vec2 depth = cp_vec2_heading(pose.yaw_rad);
     return (cp_outline){
         .centre_m = cp_vec2_add(pose.position_m, cp_vec2_scale(depth, 0.5 * barrier->depth_m)),
-        .yaw_rad = pose.yaw_rad,
+        .along = depth,
         .half_length_m = 0.5 * barrier->depth_m,
         .half_width_m = 0.5 * barrier->width_m,
         .radius_m = barrier->corner_radius_m};

@@ -14,7 +14,7 @@ static polygon core_polygon(const cp_outline *outline)
 {
     double a = outline->half_length_m - outline->radius_m;
     double b = outline->half_width_m - outline->radius_m;
-    cp_vec2 along = cp_vec2_heading(outline->yaw_rad);
+    cp_vec2 along = outline->along;
     cp_vec2 across = {-along.y, along.x};
     polygon core;
     static const double SIGN_ALONG[4] = {1, -1, -1, 1};
@@ -188,14 +188,24 @@ cp_manifold cp_outline_contact(const cp_outline *a, const cp_outline *b, double 
     return manifold;
 }
 
-double cp_outline_distance(const cp_outline *a, const cp_outline *b)
+double cp_outline_distance_below(const cp_outline *a, const cp_outline *b, double limit_m)
 {
+    if (far_apart(a, b, limit_m))
+        return INFINITY;
     polygon core_a = core_polygon(a), core_b = core_polygon(b);
     int face = 0;
+    double radii_m = a->radius_m + b->radius_m;
     double gap_m = fmax(face_gap(&core_a, &core_b, &face), face_gap(&core_b, &core_a, &face));
+    if (gap_m - radii_m >= limit_m)
+        return INFINITY;
     if (gap_m > 0.0) {
         cp_vec2 on_a, on_b;
         gap_m = nearest_points(&core_a, &core_b, &on_a, &on_b);
     }
-    return gap_m - a->radius_m - b->radius_m;
+    return gap_m - radii_m;
+}
+
+double cp_outline_distance(const cp_outline *a, const cp_outline *b)
+{
+    return cp_outline_distance_below(a, b, INFINITY);
 }

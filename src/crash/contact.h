@@ -8,8 +8,8 @@
 
 typedef struct cp_outline {
     cp_vec2 centre_m;
-    double yaw_rad;
-    double half_length_m; /* along yaw, rounding included */
+    cp_vec2 along;        /* unit vector of its length; cp_vec2_heading(yaw) makes one */
+    double half_length_m; /* along it, rounding included */
     double half_width_m;  /* across, rounding included */
     double radius_m;      /* <= both halves */
 } cp_outline;
@@ -31,5 +31,7 @@ cp_manifold cp_outline_contact(const cp_outline *a, const cp_outline *b, double 
 
 /* Distance of the surfaces; negative: depth of penetration. */
 double cp_outline_distance(const cp_outline *a, const cp_outline *b);
+/* The same where it is below limit_m, else INFINITY, sooner. */
+double cp_outline_distance_below(const cp_outline *a, const cp_outline *b, double limit_m);
 
 #endif

@@ -27,7 +27,7 @@ static cp_outline car_outline(const cp_vehicle_model *model, const cp_body_state
     cp_vec2 along = cp_vec2_heading(state->yaw_rad);
     double forward_m = model->cg_to_front_m - 0.5 * model->length_m;
     return (cp_outline){.centre_m = cp_vec2_add(state->cog_m, cp_vec2_scale(along, forward_m)),
-                        .yaw_rad = state->yaw_rad,
+                        .along = along,
                         .half_length_m = 0.5 * model->length_m,
                         .half_width_m = 0.5 * model->width_m,
                         .radius_m = 0.0};
@@ -71,13 +71,19 @@ static bool find_touch(const cp_outline *a, const cp_vehicle_model *model_b,
     return false;
 }
 
+// A vector in the frame of an outline.
+static cp_vec2 to_outline(const cp_outline *outline, cp_vec2 vector)
+{
+    return (cp_vec2){cp_vec2_dot(outline->along, vector), cp_vec2_cross(outline->along, vector)};
+}
+
 // Struck side of an outline: the face that holds the point; at a corner the one more opposed to
 // the other body's relative velocity.
 static cp_contact_side struck_side(const cp_outline *outline, cp_vec2 point_m,
                                    cp_vec2 velocity_of_other_m_s)
 {
-    cp_vec2 local = cp_vec2_rotate(cp_vec2_sub(point_m, outline->centre_m), -outline->yaw_rad);
-    cp_vec2 velocity = cp_vec2_rotate(velocity_of_other_m_s, -outline->yaw_rad);
+    cp_vec2 local = to_outline(outline, cp_vec2_sub(point_m, outline->centre_m));
+    cp_vec2 velocity = to_outline(outline, velocity_of_other_m_s);
     double gap_m[4] = {outline->half_length_m - local.x, outline->half_width_m - local.y,
                        outline->half_width_m + local.y, outline->half_length_m + local.x};
     double opposed[4] = {-velocity.x, -velocity.y, velocity.y, velocity.x};
@@ -150,9 +156,9 @@ cp_status cp_crash_configuration_from_description(
 // Share of a's width that the opponent's outline covers, projected on a's y axis.
 static double overlap_share(const cp_outline *a, const cp_outline *b)
 {
-    cp_vec2 centre = cp_vec2_rotate(cp_vec2_sub(b->centre_m, a->centre_m), -a->yaw_rad);
-    double turn_rad = b->yaw_rad - a->yaw_rad;
-    double reach_m = fabs(sin(turn_rad)) * b->half_length_m + fabs(cos(turn_rad)) * b->half_width_m;
+    cp_vec2 centre = to_outline(a, cp_vec2_sub(b->centre_m, a->centre_m));
+    cp_vec2 turned = to_outline(a, b->along);
+    double reach_m = fabs(turned.y) * b->half_length_m + fabs(turned.x) * b->half_width_m;
     double low_m = fmax(-a->half_width_m, centre.y - reach_m);
     double high_m = fmin(a->half_width_m, centre.y + reach_m);
     return fmax(0.0, high_m - low_m) / (2.0 * a->half_width_m);

@@ -126,12 +126,12 @@ static bool find_first_touch(crash_run *run, cp_vec2 approach, double *travel_m)
     cp_displacement move[2] = {{{0.0, 0.0}, 0.0}, {{0.0, 0.0}, 0.0}};
     for (; s_m > -30.0; s_m -= 1.0) {
         move[0].shift_m = cp_vec2_scale(approach, s_m);
-        if (cp_encounter_distance(&run->encounter, move) > 0.0)
+        if (cp_encounter_distance(&run->encounter, move, INFINITY) > 0.0)
             break;
     }
     while (s_m < 30.0) {
         move[0].shift_m = cp_vec2_scale(approach, s_m);
-        double distance_m = cp_encounter_distance(&run->encounter, move);
+        double distance_m = cp_encounter_distance(&run->encounter, move, INFINITY);
         if (distance_m < 1e-9) {
             *travel_m = s_m;
             return true;
@@ -289,7 +289,7 @@ static bool will_meet_again(const crash_run *run, double horizon_s)
             move[c] = (cp_displacement){
                 cp_vec2_scale(cp_vec2_sub(run->last[c].velocity_m_s, run->common_m_s), t_s),
                 run->last[c].yaw_rate_rad_s * t_s};
-        if (cp_encounter_distance(&run->encounter, move) < 0.02)
+        if (isfinite(cp_encounter_distance(&run->encounter, move, 0.02)))
             return true;
     }
     return false;

@@ -17,7 +17,7 @@ static cp_outline displaced(cp_outline outline, cp_vec2 pivot_m, cp_displacement
 {
     cp_vec2 arm = cp_vec2_rotate(cp_vec2_sub(outline.centre_m, pivot_m), displacement.turn_rad);
     outline.centre_m = cp_vec2_add(cp_vec2_add(pivot_m, arm), displacement.shift_m);
-    outline.yaw_rad += displacement.turn_rad;
+    outline.along = cp_vec2_rotate(outline.along, displacement.turn_rad);
     return outline;
 }
 
@@ -27,11 +27,9 @@ static cp_vec2 pivot_of(const cp_encounter *encounter, int party)
     return car != NULL ? cp_car_cog_state(car).cog_m : encounter->barrier.centre_m;
 }
 
-double cp_encounter_distance(const cp_encounter *encounter, const cp_displacement displacement[2])
+double cp_encounter_distance(const cp_encounter *encounter, const cp_displacement displacement[2],
+                             double limit_m)
 {
-    static const cp_displacement NONE[2] = {{{0.0, 0.0}, 0.0}, {{0.0, 0.0}, 0.0}};
-    if (displacement == NULL)
-        displacement = NONE;
     cp_outline outline[2][CP_OUTLINE_COUNT];
     for (int party = 0; party < 2; party++) {
         cp_vec2 pivot_m = pivot_of(encounter, party);
@@ -40,9 +38,13 @@ double cp_encounter_distance(const cp_encounter *encounter, const cp_displacemen
                 displaced(outline_now(encounter, party, k), pivot_m, displacement[party]);
     }
     double nearest_m = INFINITY;
-    for (int i = 0; i < outline_count(encounter, 0); i++)
-        for (int j = 0; j < outline_count(encounter, 1); j++)
-            nearest_m = fmin(nearest_m, cp_outline_distance(&outline[0][i], &outline[1][j]));
+    for (int i = 0; i < outline_count(encounter, 0); i++) {
+        for (int j = 0; j < outline_count(encounter, 1); j++) {
+            double distance_m = cp_outline_distance_below(&outline[0][i], &outline[1][j], limit_m);
+            nearest_m = fmin(nearest_m, distance_m);
+            limit_m = fmin(limit_m, nearest_m);
+        }
+    }
     return nearest_m;
 }
 

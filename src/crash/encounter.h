@@ -41,12 +41,13 @@ typedef struct cp_encounter {
 } cp_encounter;
 
 /* Smallest distance of the outlines of the two parties, each displaced by a translation and by a
- * turn about its centre of gravity: rigid extrapolation. NULL displacement: as they are. */
+ * turn about its centre of gravity: rigid extrapolation. INFINITY if it is not below limit_m. */
 typedef struct cp_displacement {
     cp_vec2 shift_m;
     double turn_rad;
 } cp_displacement;
-double cp_encounter_distance(const cp_encounter *encounter, const cp_displacement displacement[2]);
+double cp_encounter_distance(const cp_encounter *encounter, const cp_displacement displacement[2],
+                             double limit_m);
 
 /* Once both parties are set: stiffness and damping of every pair. */
 void cp_encounter_set_pairs(cp_encounter *encounter);

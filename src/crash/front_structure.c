@@ -497,7 +497,7 @@ cp_outline cp_car_outline_now(const cp_car *car, int index)
     const cp_car_outline *outline = &car->outline[index];
     dBodyID body = car->body[outline->body];
     return (cp_outline){.centre_m = body_point(body, outline->centre_m),
-                        .yaw_rad = cp_body_pose(body).yaw_rad,
+                        .along = body_direction(body, (cp_vec2){1.0, 0.0}),
                         .half_length_m = outline->half_length_m,
                         .half_width_m = outline->half_width_m,
                         .radius_m = outline->radius_m};

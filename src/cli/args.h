@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CLI_ARGS_H
+#define CLI_ARGS_H
+
+#include "cli/output.h"
+
+#include <argp.h>
+
+/* What the commands share in reading their arguments. A wrong argument ends the program with one
+ * message and exit code 2. */
+
+/* --format table|json|csv as a child parser; its input is a cp_format*. */
+extern const struct argp CP_ARGS_FORMAT;
+
+/* Read argument text of option name as a number in [smallest, largest]: the whole text, finite. */
+double cp_args_number(struct argp_state *state, const char *name, const char *text, double smallest,
+                      double largest, const char *unit);
+
+/* The same for whole numbers. */
+long cp_args_integer(struct argp_state *state, const char *name, const char *text, long smallest,
+                     long largest);
+
+/* Parse with argp; the program calls itself "crashpulse <command>" in messages. */
+void cp_args_parse(const struct argp *argp, int argc, char **argv, void *input);
+
+#endif

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calibrate/calibration.h"
+#include "cli/args.h"
+#include "cli/commands.h"
+#include "crash/crash_simulation.h"
+
+#include <stdio.h>
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    const char **path = state->input;
+    switch (key) {
+    case ARGP_KEY_ARG:
+        if (*path != NULL)
+            argp_error(state, "one fit at a time, found '%s' too", argument);
+        *path = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (*path == NULL)
+            argp_error(state, "which fit? FIT.yaml is missing");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp ARGP = {
+    .parser = parse,
+    .args_doc = "FIT.yaml",
+    .doc =
+        "Fit a vehicle model to reference OLC values: a global search, then Nelder-Mead. Writes "
+        "the fitted vehicle file and a report beside it (.fit.md)."
+        "\v"
+        "The fit file names base vehicle, reference, unknowns with bounds, algorithm, seed and "
+        "budget (db/vehicles/README.md). A killed fit goes on where it was when called again.\n\n"
+        "Example:\n"
+        "  crashpulse calibrate db/vehicles/honda_accord_2014.fit.yaml\n",
+};
+
+cp_status cmd_calibrate(int argc, char **argv, cp_error *error)
+{
+    const char *path = NULL;
+    cp_args_parse(&ARGP, argc, argv, &path);
+
+    cp_fit fit;
+    cp_calibration calibration = {0};
+    cp_status status = cp_fit_load(path, &fit, error);
+    if (status != CP_OK)
+        return status;
+    status = cp_crash_library_begin(error);
+    if (status == CP_OK) {
+        status = cp_calibration_run(&fit, &calibration, error);
+        cp_crash_library_end();
+    }
+    if (status == CP_OK)
+        status = cp_calibration_write(&fit, &calibration, error);
+    if (status == CP_OK) {
+        printf("%s: mean absolute OLC error %.3f g, largest %.2f g\n", fit.output_path,
+               calibration.validation.mean_abs_error_g, calibration.validation.max_abs_error_g);
+        if (calibration.held_out_g != NULL)
+            printf("%zu-fold cross-validation: %.3f g\n", calibration.fold_count,
+                   calibration.cross_validation.mean_abs_error_g);
+    }
+    cp_calibration_destroy(&calibration);
+    cp_fit_destroy(&fit);
+    return status;
+}

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/args.h"
+#include "cli/commands.h"
+#include "core/log.h"
+#include "report/report.h"
+
+typedef struct arguments {
+    const char *db_path;
+    const char *output_path;
+    const char *baseline;
+} arguments;
+
+static const struct argp_option OPTIONS[] = {
+    {"output", 'o', "FILE.html", 0, "file to write", 0},
+    {"baseline", 'b', "VARIANT", 0, "compare with this variant (default: the study's baseline)", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    arguments *a = state->input;
+    switch (key) {
+    case 'o':
+        a->output_path = argument;
+        return 0;
+    case 'b':
+        a->baseline = argument;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (a->db_path)
+            argp_error(state, "one database at a time, found '%s' too", argument);
+        a->db_path = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!a->db_path)
+            argp_error(state, "which database? DB is missing");
+        if (!a->output_path)
+            argp_error(state, "where to? --output FILE.html is missing");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp ARGP = {
+    .options = OPTIONS,
+    .parser = parse,
+    .args_doc = "DB --output FILE.html",
+    .doc =
+        "Write the comparison of a study as one HTML file: figures with filters, tables, limits, "
+        "and what is needed to make it again."
+        "\v"
+        "The file needs no network and no other file. Every figure can be saved from the page as "
+        "SVG and its data as CSV.\n\n"
+        "Example:\n"
+        "  crashpulse report demo.db --output demo.html\n",
+};
+
+cp_status cmd_report(int argc, char **argv, cp_error *error)
+{
+    arguments a = {0};
+    cp_args_parse(&ARGP, argc, argv, &a);
+    cp_store *store = NULL;
+    cp_status status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+    if (status == CP_OK)
+        status = cp_report_write(store, a.baseline, a.output_path, error);
+    if (status == CP_OK)
+        cp_log_info("wrote %s", a.output_path);
+    cp_store_close(store);
+    return status;
+}

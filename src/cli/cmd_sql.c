@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/args.h"
+#include "cli/commands.h"
+#include "report/query_json.h"
+#include "store/query.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct arguments {
+    const char *db_path;
+    const char *query;
+    cp_format format;
+} arguments;
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    arguments *a = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &a->format;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (a->query)
+            argp_error(state, "one query at a time, found '%s' too", argument);
+        *(a->db_path ? &a->query : &a->db_path) = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!a->db_path)
+            argp_error(state, "which database? DB is missing");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+
+static const struct argp ARGP = {
+    .parser = parse,
+    .args_doc = "DB [QUERY]",
+    .doc = "Ask the database of a study. With QUERY: print the result of one SQL statement that "
+           "reads. Without: start the sqlite3 shell on it."
+           "\v"
+           "Tables and views are described in db/schema and db/views.sql, questions others asked "
+           "are in db/queries.\n\n"
+           "Examples:\n"
+           "  crashpulse sql demo.db \"SELECT * FROM olc_by_variant\"\n"
+           "  crashpulse sql demo.db -f csv \"SELECT * FROM frontal_vehicle\" > cars.csv\n"
+           "  crashpulse sql demo.db \"$(cat db/queries/worst_crashes.sql)\"\n"
+           "  crashpulse sql demo.db\n",
+    .children = CHILDREN,
+};
+
+static cp_status begin_table(void *context, const cp_row *row, cp_error *error)
+{
+    (void)error;
+    cp_table_begin(context, row->column, row->column_count);
+    return CP_OK;
+}
+
+static cp_status add_row(void *context, const cp_row *row, cp_error *error)
+{
+    (void)error;
+    for (size_t k = 0; k < row->column_count; k++)
+        cp_table_json(context, cp_cell_json(&row->cell[k]));
+    return CP_OK;
+}
+
+static cp_status print_query(cp_store *store, const arguments *a, cp_error *error)
+{
+    cp_table table = {0};
+    cp_query_handler handler = {.columns = begin_table, .row = add_row, .context = &table};
+    cp_status status = cp_query(store, a->query, NULL, 0, &handler, error);
+    if (status == CP_OK)
+        status = cp_table_print(&table, a->format, stdout, error);
+    cp_table_destroy(&table);
+    return status;
+}
+
+cp_status cmd_sql(int argc, char **argv, cp_error *error)
+{
+    arguments a = {0};
+    cp_args_parse(&ARGP, argc, argv, &a);
+
+    // Opened in both cases: a file that is no study's database is refused with one clear message.
+    cp_store *store = NULL;
+    cp_status status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+    if (status != CP_OK)
+        return status;
+    if (a.query)
+        status = print_query(store, &a, error);
+    cp_store_close(store);
+    if (a.query)
+        return status;
+    execlp("sqlite3", "sqlite3", "-header", "-column", a.db_path, (char *)NULL);
+    return cp_fail(error, CP_BAD_INPUT,
+                   "cannot start the sqlite3 shell (%s); install sqlite3 or give a QUERY",
+                   strerror(errno));
+}

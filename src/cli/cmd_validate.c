@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calibrate/objective.h"
+#include "calibrate/validation.h"
+#include "cli/args.h"
+#include "cli/commands.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+typedef struct arguments {
+    const char *vehicle_path;
+    const char *reference_path;
+    long threads;
+    cp_format format;
+} arguments;
+
+static const struct argp_option OPTIONS[] = {
+    {"reference", 'r', "FILE.csv", 0,
+     "OLC values to hold the model against: columns speed_kmh, offset_mm, angle_deg, olc_fe_g", 0},
+    {"threads", 'j', "N", 0, "simulate on N threads (default: as many as cores)", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    arguments *a = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &a->format;
+        return 0;
+    case 'r':
+        a->reference_path = argument;
+        return 0;
+    case 'j':
+        a->threads = cp_args_integer(state, "--threads", argument, 1, 64);
+        return 0;
+    case ARGP_KEY_ARG:
+        if (a->vehicle_path != NULL)
+            argp_error(state, "one vehicle at a time, found '%s' too", argument);
+        a->vehicle_path = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (a->vehicle_path == NULL)
+            argp_error(state, "which vehicle? VEHICLE.yaml is missing");
+        if (a->reference_path == NULL)
+            argp_error(state, "--reference FILE.csv is missing");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+
+static const struct argp ARGP = {
+    .options = OPTIONS,
+    .parser = parse,
+    .args_doc = "VEHICLE.yaml",
+    .doc = "Hold a vehicle model against reference OLC values: every configuration is simulated "
+           "against the barrier of the vehicle file; errors are model minus reference, in g."
+           "\v"
+           "Example:\n"
+           "  crashpulse validate db/vehicles/honda_accord_2014.yaml \\\n"
+           "    --reference db/reference/olc_accord_2014.csv --format json\n",
+    .children = CHILDREN,
+};
+
+static const char *const VARIABLE[3] = {"speed_km_h", "offset_mm", "angle_deg"};
+
+static json_t *group_json(const cp_validation *validation, int variable)
+{
+    json_t *groups = json_array();
+    for (size_t k = 0; k < validation->group_count[variable]; k++) {
+        const cp_validation_group *group = &validation->group[variable][k];
+        json_array_append_new(groups, json_pack("{s:f, s:I, s:f}", VARIABLE[variable], group->value,
+                                                "count", (json_int_t)group->count,
+                                                "mean_abs_error_g", group->mean_abs_error_g));
+    }
+    return groups;
+}
+
+static json_t *result_json(const char *name, const cp_reference *reference, const double *olc_g,
+                           const cp_validation *v)
+{
+    json_t *rows = json_array();
+    for (size_t k = 0; k < reference->count; k++) {
+        const cp_reference_case *row = &reference->cases[k];
+        json_array_append_new(rows,
+                              json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "speed_km_h",
+                                        row->speed_km_h, "offset_mm", row->offset_mm, "angle_deg",
+                                        row->angle_deg, "reference_olc_g", row->olc_g, "olc_g",
+                                        olc_g[k], "error_g", olc_g[k] - row->olc_g));
+    }
+    return json_pack("{s:s, s:I, s:f, s:[f,f,f], s:f, s:f, s:f, s:o, s:o, s:o, s:o}", "vehicle",
+                     name, "count", (json_int_t)v->count, "mean_abs_error_g", v->mean_abs_error_g,
+                     "quartiles_abs_error_g", v->quartile_g[0], v->quartile_g[1], v->quartile_g[2],
+                     "max_abs_error_g", v->max_abs_error_g, "lowest_error_g", v->lowest_error_g,
+                     "highest_error_g", v->highest_error_g, "by_speed", group_json(v, 0),
+                     "by_offset", group_json(v, 1), "by_angle", group_json(v, 2), "configurations",
+                     rows);
+}
+
+static cp_status print_cases(const cp_reference *reference, const double *olc_g, cp_format format,
+                             cp_error *error)
+{
+    static const char *const COLUMNS[] = {"speed_km_h",      "offset_mm", "angle_deg",
+                                          "reference_olc_g", "olc_g",     "error_g"};
+    cp_table table = {0};
+    cp_table_begin(&table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS);
+    for (size_t k = 0; k < reference->count; k++) {
+        const cp_reference_case *row = &reference->cases[k];
+        cp_table_real(&table, row->speed_km_h);
+        cp_table_real(&table, row->offset_mm);
+        cp_table_real(&table, row->angle_deg);
+        cp_table_real(&table, row->olc_g);
+        cp_table_real(&table, olc_g[k]);
+        cp_table_real(&table, olc_g[k] - row->olc_g);
+    }
+    cp_status status = cp_table_print(&table, format, stdout, error);
+    cp_table_destroy(&table);
+    return status;
+}
+
+static void print_summary(const cp_validation *v)
+{
+    printf("\nmean absolute error %.3f g; quartiles %.2f / %.2f / %.2f g; largest %.2f g; "
+           "signed errors %.2f to %+.2f g; %zu configurations\n",
+           v->mean_abs_error_g, v->quartile_g[0], v->quartile_g[1], v->quartile_g[2],
+           v->max_abs_error_g, v->lowest_error_g, v->highest_error_g, v->count);
+    for (int variable = 0; variable < 3; variable++) {
+        printf("by %s:", VARIABLE[variable]);
+        for (size_t k = 0; k < v->group_count[variable]; k++)
+            printf("  %g: %.3f", v->group[variable][k].value,
+                   v->group[variable][k].mean_abs_error_g);
+        putchar('\n');
+    }
+}
+
+static cp_status print(const cp_vehicle_model *model, const cp_reference *reference,
+                       const double *olc_g, cp_format format, cp_error *error)
+{
+    cp_validation validation;
+    cp_status status =
+        cp_validate_olc(reference->cases, olc_g, reference->count, &validation, error);
+    if (status != CP_OK)
+        return status;
+    if (format == CP_FORMAT_JSON)
+        return cp_json_print(result_json(model->name, reference, olc_g, &validation), stdout,
+                             error);
+    status = print_cases(reference, olc_g, format, error);
+    if (status == CP_OK && format == CP_FORMAT_TABLE)
+        print_summary(&validation);
+    return status;
+}
+
+cp_status cmd_validate(int argc, char **argv, cp_error *error)
+{
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    arguments a = {.threads = cores > 0 && cores < 64 ? cores : 1};
+    cp_args_parse(&ARGP, argc, argv, &a);
+
+    cp_vehicle_model model;
+    cp_reference reference = {0};
+    double *olc_g = NULL;
+    cp_status status = cp_vehicle_model_load(a.vehicle_path, &model, error);
+    if (status == CP_OK)
+        status = cp_reference_load(a.reference_path, &reference, error);
+    if (status == CP_OK) {
+        olc_g = calloc(reference.count, sizeof *olc_g);
+        status =
+            olc_g != NULL ? cp_crash_library_begin(error) : cp_fail_memory(error, "validation");
+    }
+    if (status == CP_OK) {
+        status =
+            cp_objective_olc(&model, reference.cases, reference.count,
+                             cp_crash_options_default().time_step_s, (int)a.threads, olc_g, error);
+        cp_crash_library_end();
+    }
+    if (status == CP_OK)
+        status = print(&model, &reference, olc_g, a.format, error);
+    free(olc_g);
+    cp_reference_destroy(&reference);
+    return status;
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CLI_COMMANDS_H
+#define CLI_COMMANDS_H
+
+#include "core/error.h"
+
+/* The commands. argv[0] is the command's name. Wrong arguments and --help end the program; what
+ * fails later is returned, results go to stdout. */
+CP_MUST_CHECK cp_status cmd_run(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_compare(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_report(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_sql(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_crash(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_validate(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_calibrate(int argc, char **argv, cp_error *error);
+
+#endif

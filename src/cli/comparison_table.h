@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CLI_COMPARISON_TABLE_H
+#define CLI_COMPARISON_TABLE_H
+
+#include "cli/output.h"
+#include "report/comparison.h"
+
+/* A comparison for the terminal: one row a quantity, one column a variant, then the answer. */
+CP_MUST_CHECK cp_status cp_comparison_print_table(const cp_study_data *data,
+                                                  const cp_comparison *comparison,
+                                                  const char *answer, FILE *file, cp_error *error);
+
+/* The same numbers in long form: variant,against,scope,quantity,relation,value,low,high,interval.
+ * against is empty for figures of one variant; relation is "=", "<" or ">"; interval names the
+ * kind of low and high, or why there is none. */
+CP_MUST_CHECK cp_status cp_comparison_print_csv(const cp_study_data *data,
+                                                const cp_comparison *comparison, FILE *file,
+                                                cp_error *error);
+
+#endif

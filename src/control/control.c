@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "control/control.h"
+
+#include "control/control_types.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const cp_control_type *const CP_CONTROL_TYPE[] = {
+    &CP_CONTROL_FAILED_TO_SEE,
+    &CP_CONTROL_RISKY_OVERTAKING,
+    &CP_CONTROL_AEB,
+};
+const size_t CP_CONTROL_TYPE_COUNT = sizeof CP_CONTROL_TYPE / sizeof *CP_CONTROL_TYPE;
+
+typedef struct active_control {
+    cp_control_settings settings;
+    cp_control_context context;
+    void *state;
+} active_control;
+
+struct cp_controls {
+    active_control *active;
+    size_t count; /* created so far */
+};
+
+const cp_control_type *cp_control_type_find(cp_control_kind kind, const char *name)
+{
+    for (size_t k = 0; k < CP_CONTROL_TYPE_COUNT; k++)
+        if (CP_CONTROL_TYPE[k]->kind == kind && strcmp(CP_CONTROL_TYPE[k]->name, name) == 0)
+            return CP_CONTROL_TYPE[k];
+    return NULL;
+}
+
+cp_control_settings cp_control_settings_default(const cp_control_type *type)
+{
+    cp_control_settings settings = {.type = type};
+    for (size_t k = 0; k < type->parameter_count; k++)
+        settings.parameter[k] = type->parameters[k].standard;
+    return settings;
+}
+
+static cp_status check_ranges(const cp_control_settings *settings, cp_error *error)
+{
+    const cp_control_type *type = settings->type;
+    for (size_t k = 0; k < type->parameter_count; k++) {
+        const cp_control_parameter *row = &type->parameters[k];
+        double value = settings->parameter[k];
+        if (!(value >= row->smallest && value <= row->largest))
+            return cp_fail(error, CP_BAD_INPUT, "%s: %s must be in %g..%g, found %g", type->name,
+                           row->name, row->smallest, row->largest, value);
+    }
+    return CP_OK;
+}
+
+static cp_status create_one(active_control *active, const cp_control_settings *settings,
+                            cp_rng_key replication_key, const cp_traffic *traffic, cp_error *error)
+{
+    cp_status status = check_ranges(settings, error);
+    if (status != CP_OK)
+        return status;
+    active->settings = *settings;
+    active->context = (cp_control_context){
+        .traffic = traffic,
+        .seed_key = cp_rng_key_text(replication_key, settings->type->name),
+        .parameter = active->settings.parameter,
+    };
+    return settings->type->create(&active->context, &active->state, error);
+}
+
+cp_status cp_controls_create(const cp_control_settings *settings, size_t count, uint64_t study_seed,
+                             uint64_t replication_seed, const cp_traffic *traffic,
+                             cp_controls **controls, cp_error *error)
+{
+    *controls = NULL;
+    cp_controls *created = calloc(1, sizeof *created);
+    if (!created)
+        return cp_fail_memory(error, "controls");
+    cp_status status = CP_OK;
+    if (count > 0 && !(created->active = calloc(count, sizeof *created->active)))
+        status = cp_fail_memory(error, "controls");
+    cp_rng_key key = cp_rng_key_number(cp_rng_key_seed(study_seed), replication_seed);
+    for (size_t k = 0; k < count && status == CP_OK; k++) {
+        status = create_one(&created->active[k], &settings[k], key, traffic, error);
+        if (status == CP_OK)
+            created->count++;
+    }
+    if (status != CP_OK) {
+        cp_controls_destroy(created);
+        return status;
+    }
+    *controls = created;
+    return CP_OK;
+}
+
+void cp_controls_destroy(cp_controls *controls)
+{
+    if (!controls)
+        return;
+    for (size_t k = 0; k < controls->count; k++)
+        controls->active[k].settings.type->destroy(controls->active[k].state);
+    free(controls->active);
+    free(controls);
+}
+
+cp_status cp_controls_step(cp_controls *controls, cp_error *error)
+{
+    for (size_t k = 0; k < controls->count; k++) {
+        active_control *active = &controls->active[k];
+        const cp_control_type *type = active->settings.type;
+        cp_status status = type->step(active->state, &active->context, error);
+        if (status != CP_OK) {
+            cp_error_prefix(error, "%s: ", type->name);
+            return status;
+        }
+    }
+    return CP_OK;
+}
+
+bool cp_controls_is_at_fault(void *context, uint32_t vehicle)
+{
+    const cp_controls *controls = context;
+    for (size_t k = 0; k < controls->count; k++) {
+        const active_control *active = &controls->active[k];
+        const cp_control_type *type = active->settings.type;
+        if (type->is_at_fault && type->is_at_fault(active->state, vehicle))
+            return true;
+    }
+    return false;
+}
+
+#define COUNTERS_MAX 16
+
+// Counters of one control under "name.counter"; false when memory is gone.
+static bool add_counters(json_t *object, const active_control *active)
+{
+    const cp_control_type *type = active->settings.type;
+    if (!type->counters)
+        return true;
+    const char *names[COUNTERS_MAX];
+    double values[COUNTERS_MAX];
+    size_t count = type->counters(active->state, names, values, COUNTERS_MAX);
+    for (size_t k = 0; k < count; k++) {
+        char key[128];
+        snprintf(key, sizeof key, "%s.%s", type->name, names[k]);
+        if (json_object_set_new(object, key, json_real(values[k])) != 0)
+            return false;
+    }
+    return true;
+}
+
+cp_status cp_controls_counters_json(const cp_controls *controls, char **json, cp_error *error)
+{
+    *json = NULL;
+    json_t *object = json_object();
+    bool is_complete = object != NULL;
+    for (size_t k = 0; k < controls->count && is_complete; k++)
+        is_complete = add_counters(object, &controls->active[k]);
+    if (is_complete)
+        *json = json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(15));
+    json_decref(object);
+    return *json ? CP_OK : cp_fail_memory(error, "counters");
+}

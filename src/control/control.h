@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CONTROL_CONTROL_H
+#define CONTROL_CONTROL_H
+
+#include "core/rng.h"
+#include "traffic/traffic.h"
+
+/* What acts on vehicles besides SUMO's own driver: driver errors (baseline humans) and driver
+ * assistance functions. All share one interface, listed in one table; another one is one file and
+ * one row. Parameters are numbers with a unit in the name. */
+
+typedef enum cp_control_kind {
+    CP_CONTROL_DRIVER_ERROR, /* belongs to a scenario: drivers as they are */
+    CP_CONTROL_FUNCTION      /* belongs to a variant: a driver assistance function */
+} cp_control_kind;
+
+/* One parameter of a control: name as in the study file ("ttc_s"), range, default and source. */
+typedef struct cp_control_parameter {
+    const char *name;
+    double standard;
+    double smallest;
+    double largest;
+    const char *what; /* with source, or the word "assumed" */
+} cp_control_parameter;
+
+#define CP_CONTROL_PARAMETERS_MAX 24
+
+/* What a control sees when it acts. seed_key already holds study seed, replication seed and the
+ * control's name: derive from it by vehicle ids and occasion only (core/rng.h). */
+typedef struct cp_control_context {
+    const cp_traffic *traffic;
+    cp_rng_key seed_key;
+    const double *parameter; /* by index of the type's parameter table */
+} cp_control_context;
+
+/* A kind of control. create/step/destroy handle its mutable state of one replication. */
+typedef struct cp_control_type {
+    const char *name; /* "failed_to_see", "aeb" */
+    cp_control_kind kind;
+    const char *what; /* one line for --help and reports */
+    const cp_control_parameter *parameters;
+    size_t parameter_count;
+    CP_MUST_CHECK cp_status (*create)(const cp_control_context *context, void **state,
+                                      cp_error *error);
+    /* After each traffic step; commands hold for the next one. */
+    CP_MUST_CHECK cp_status (*step)(void *state, const cp_control_context *context,
+                                    cp_error *error);
+    /* Whether this control made the vehicle err (role a goes to the one at fault); may be NULL. */
+    bool (*is_at_fault)(const void *state, uint32_t vehicle);
+    /* What it did, e.g. {"activations": 12}; names static. May be NULL. */
+    size_t (*counters)(const void *state, const char **names, double *values, size_t room);
+    void (*destroy)(void *state);
+} cp_control_type;
+
+extern const cp_control_type *const CP_CONTROL_TYPE[];
+extern const size_t CP_CONTROL_TYPE_COUNT;
+
+/* NULL when there is none of that name and kind. */
+const cp_control_type *cp_control_type_find(cp_control_kind kind, const char *name);
+
+/* One control as a study configures it. */
+typedef struct cp_control_settings {
+    const cp_control_type *type;
+    double parameter[CP_CONTROL_PARAMETERS_MAX];
+} cp_control_settings;
+
+cp_control_settings cp_control_settings_default(const cp_control_type *type);
+
+/* All controls of one replication together. */
+typedef struct cp_controls cp_controls;
+
+/* settings: count controls, driver errors first, in the study's order; copied. Draws depend on
+ * study_seed, replication_seed, the control's name and vehicle ids only, so paired variants share
+ * the driver errors and the equipped cars. */
+CP_MUST_CHECK cp_status cp_controls_create(const cp_control_settings *settings, size_t count,
+                                           uint64_t study_seed, uint64_t replication_seed,
+                                           const cp_traffic *traffic, cp_controls **controls,
+                                           cp_error *error);
+void cp_controls_destroy(cp_controls *controls);
+CP_MUST_CHECK cp_status cp_controls_step(cp_controls *controls, cp_error *error);
+/* Signature fits cp_detector_step: context is the cp_controls. */
+bool cp_controls_is_at_fault(void *context, uint32_t vehicle);
+/* Counters of all controls, "aeb.activations" style, as one JSON object text; caller frees. */
+CP_MUST_CHECK cp_status cp_controls_counters_json(const cp_controls *controls, char **json,
+                                                  cp_error *error);
+
+#endif

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CONTROL_CONTROL_TYPES_H
+#define CONTROL_CONTROL_TYPES_H
+
+#include "control/control.h"
+
+/* The rows of CP_CONTROL_TYPE, each defined in the file of its name. */
+
+/* Looked but failed to see: a driver overlooks certain others at junctions. */
+extern const cp_control_type CP_CONTROL_FAILED_TO_SEE;
+/* A share of drivers overtakes with too little room. */
+extern const cp_control_type CP_CONTROL_RISKY_OVERTAKING;
+/* Automatic emergency braking. */
+extern const cp_control_type CP_CONTROL_AEB;
+
+#endif

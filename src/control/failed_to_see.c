@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "control/control_types.h"
+
+#include "core/geometry.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* "Looked but failed to see": for every ordered pair of vehicles on the road at the same time one
+ * seeded draw decides whether the first overlooks the second at junctions for as long as both are
+ * there. SUMO's own per-step knobs (jmIgnoreFoeProb) are drawn again in every step, so that their
+ * effect would depend on the step length. */
+
+enum { PROBABILITY_1 };
+
+static const cp_control_parameter PARAMETERS[] = {
+    [PROBABILITY_1] = {"probability_1", 0.1, 0.0, 1.0,
+                       "chance that one driver overlooks one particular other at a junction, drawn "
+                       "once per ordered pair (assumed; not calibrated to accident statistics)"},
+};
+
+/* Whom one driver overlooks. */
+typedef struct blind_spot {
+    uint32_t *foes;
+    size_t count;
+    size_t capacity;
+    bool is_known; /* drawn against all known others */
+} blind_spot;
+
+typedef struct failed_to_see {
+    const cp_traffic *traffic;
+    blind_spot *spots; /* by vehicle number */
+    size_t numbers;
+    size_t pairs;      /* drawn */
+    size_t overlooked; /* of these, true */
+} failed_to_see;
+
+static cp_status create(const cp_control_context *context, void **state, cp_error *error)
+{
+    failed_to_see *created = calloc(1, sizeof *created);
+    if (!created)
+        return cp_fail_memory(error, "failed_to_see");
+    created->traffic = context->traffic;
+    *state = created;
+    return CP_OK;
+}
+
+static void destroy(void *state)
+{
+    failed_to_see *self = state;
+    for (size_t k = 0; k < self->numbers; k++)
+        free(self->spots[k].foes);
+    free(self->spots);
+    free(self);
+}
+
+static cp_status reserve(failed_to_see *self, uint32_t vehicle, cp_error *error)
+{
+    if (vehicle < self->numbers)
+        return CP_OK;
+    size_t numbers = 2 * ((size_t)vehicle + 1);
+    blind_spot *spots = realloc(self->spots, numbers * sizeof *spots);
+    if (!spots)
+        return cp_fail_memory(error, "failed_to_see");
+    memset(&spots[self->numbers], 0, (numbers - self->numbers) * sizeof *spots);
+    self->spots = spots;
+    self->numbers = numbers;
+    return CP_OK;
+}
+
+static cp_status add_foe(blind_spot *spot, uint32_t foe, cp_error *error)
+{
+    if (spot->count == spot->capacity) {
+        size_t capacity = spot->capacity ? 2 * spot->capacity : 8;
+        uint32_t *foes = realloc(spot->foes, capacity * sizeof *foes);
+        if (!foes)
+            return cp_fail_memory(error, "failed_to_see");
+        spot->foes = foes;
+        spot->capacity = capacity;
+    }
+    spot->foes[spot->count++] = foe;
+    return CP_OK;
+}
+
+// One draw: does ego overlook foe?
+static cp_status draw_pair(failed_to_see *self, const cp_control_context *context, uint32_t ego,
+                           uint32_t foe, bool *overlooks, cp_error *error)
+{
+    cp_rng_key key = cp_rng_key_text(context->seed_key, cp_traffic_vehicle_id(self->traffic, ego));
+    key = cp_rng_key_text(key, cp_traffic_vehicle_id(self->traffic, foe));
+    self->pairs++;
+    *overlooks = cp_rng_uniform(key, 0) < context->parameter[PROBABILITY_1];
+    if (!*overlooks)
+        return CP_OK;
+    self->overlooked++;
+    return add_foe(&self->spots[ego], foe, error);
+}
+
+// Tell SUMO all foes of ego, ids separated by blanks.
+static cp_status command(const failed_to_see *self, uint32_t ego, cp_error *error)
+{
+    const blind_spot *spot = &self->spots[ego];
+    size_t size = 1;
+    for (size_t k = 0; k < spot->count; k++)
+        size += strlen(cp_traffic_vehicle_id(self->traffic, spot->foes[k])) + 1;
+    char *text = malloc(size);
+    if (!text)
+        return cp_fail_memory(error, "failed_to_see");
+    char *end = text;
+    for (size_t k = 0; k < spot->count; k++) {
+        if (k > 0)
+            *end++ = ' ';
+        end = stpcpy(end, cp_traffic_vehicle_id(self->traffic, spot->foes[k]));
+    }
+    *end = '\0';
+    cp_status status = cp_traffic_commands(self->traffic)
+                           ->set_parameter(ego, "junctionModel.ignoreIDs", text, error);
+    free(text);
+    return status;
+}
+
+// A vehicle has come: draw it against everybody known, both ways.
+static cp_status meet(failed_to_see *self, const cp_control_context *context, uint32_t comer,
+                      cp_error *error)
+{
+    size_t count;
+    const cp_vehicle_motion *motions = cp_traffic_motions(self->traffic, &count);
+    bool overlooks_any = false;
+    for (size_t k = 0; k < count; k++) {
+        uint32_t other = motions[k].after.vehicle;
+        if (other >= self->numbers || !self->spots[other].is_known)
+            continue;
+        bool overlooks, is_overlooked;
+        cp_status status = draw_pair(self, context, comer, other, &overlooks, error);
+        if (status == CP_OK)
+            status = draw_pair(self, context, other, comer, &is_overlooked, error);
+        if (status == CP_OK && is_overlooked)
+            status = command(self, other, error);
+        if (status != CP_OK)
+            return status;
+        overlooks_any |= overlooks;
+    }
+    self->spots[comer].is_known = true;
+    return overlooks_any ? command(self, comer, error) : CP_OK;
+}
+
+static cp_status step(void *state, const cp_control_context *context, cp_error *error)
+{
+    failed_to_see *self = state;
+    if (context->parameter[PROBABILITY_1] <= 0.0)
+        return CP_OK;
+    size_t count;
+    const uint32_t *departed = cp_traffic_departed(self->traffic, &count);
+    for (size_t k = 0; k < count; k++) {
+        if (!cp_traffic_motion_of(self->traffic, departed[k]))
+            continue; // gone again within the step
+        cp_status status = reserve(self, departed[k], error);
+        if (status == CP_OK)
+            status = meet(self, context, departed[k], error);
+        if (status != CP_OK)
+            return status;
+    }
+    return CP_OK;
+}
+
+// At fault now: somebody overlooked is right before or beside the car.
+static bool is_at_fault(const void *state, uint32_t vehicle)
+{
+    const failed_to_see *self = state;
+    const double near_m = 15.0; // front to front: a car's length and two steps
+    const cp_vehicle_motion *own = cp_traffic_motion_of(self->traffic, vehicle);
+    if (!own || vehicle >= self->numbers)
+        return false;
+    const blind_spot *spot = &self->spots[vehicle];
+    for (size_t k = 0; k < spot->count; k++) {
+        const cp_vehicle_motion *foe = cp_traffic_motion_of(self->traffic, spot->foes[k]);
+        if (foe && hypot(foe->after.front_x_m - own->after.front_x_m,
+                         foe->after.front_y_m - own->after.front_y_m) < near_m)
+            return true;
+    }
+    return false;
+}
+
+static size_t counters(const void *state, const char **names, double *values, size_t room)
+{
+    const failed_to_see *self = state;
+    if (room < 2)
+        return 0;
+    names[0] = "pairs";
+    values[0] = (double)self->pairs;
+    names[1] = "overlooked_pairs";
+    values[1] = (double)self->overlooked;
+    return 2;
+}
+
+const cp_control_type CP_CONTROL_FAILED_TO_SEE = {
+    .name = "failed_to_see",
+    .kind = CP_CONTROL_DRIVER_ERROR,
+    .what = "looked but failed to see: a driver overlooks particular others at junctions",
+    .parameters = PARAMETERS,
+    .parameter_count = sizeof PARAMETERS / sizeof *PARAMETERS,
+    .create = create,
+    .step = step,
+    .is_at_fault = is_at_fault,
+    .counters = counters,
+    .destroy = destroy,
+};

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/page.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const cp_page_part *find_part(const cp_page_part *part, size_t count, const char *name,
+                                     size_t length)
+{
+    for (size_t k = 0; k < count; k++)
+        if (strlen(part[k].name) == length && strncmp(part[k].name, name, length) == 0)
+            return &part[k];
+    return NULL;
+}
+
+static cp_status fill(FILE *out, const char *text, const cp_page_part *part, size_t part_count,
+                      cp_error *error)
+{
+    for (const char *open; (open = strstr(text, "{{")) != NULL;) {
+        const char *close = strstr(open, "}}");
+        if (!close)
+            return cp_fail(error, CP_BAD_INPUT, "page template: {{ without }}");
+        size_t length = (size_t)(close - open) - 2;
+        const cp_page_part *found = find_part(part, part_count, open + 2, length);
+        if (!found)
+            return cp_fail(error, CP_BAD_INPUT, "page template: nothing fills {{%.*s}}",
+                           (int)length, open + 2);
+        fwrite(text, 1, (size_t)(open - text), out);
+        fputs(found->text, out);
+        text = close + 2;
+    }
+    fputs(text, out);
+    return CP_OK;
+}
+
+cp_status cp_page_fill(const char *template_text, const cp_page_part *part, size_t part_count,
+                       char **page, size_t *size, cp_error *error)
+{
+    *page = NULL;
+    FILE *out = open_memstream(page, size);
+    if (!out)
+        return cp_fail_memory(error, "a page");
+    cp_status status = fill(out, template_text, part, part_count, error);
+    int failed = ferror(out);
+    if ((fclose(out) != 0 || failed) && status == CP_OK)
+        status = cp_fail_memory(error, "a page");
+    if (status != CP_OK) {
+        free(*page);
+        *page = NULL;
+    }
+    return status;
+}
+
+char *cp_page_escape(const char *text)
+{
+    char *escaped = malloc(6 * strlen(text) + 1), *end = escaped;
+    for (const char *c = text; escaped && *c; c++) {
+        switch (*c) {
+        case '&':
+            end += sprintf(end, "&amp;");
+            break;
+        case '<':
+            end += sprintf(end, "&lt;");
+            break;
+        case '>':
+            end += sprintf(end, "&gt;");
+            break;
+        case '"':
+            end += sprintf(end, "&quot;");
+            break;
+        default:
+            *end++ = *c;
+        }
+    }
+    if (escaped)
+        *end = '\0';
+    return escaped;
+}

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/slice_sample.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool cp_study_crash_front_front(const cp_study_data *data, const cp_study_crash *crash)
+{
+    return strcmp(data->crash_type[crash->crash_type], "front-front") == 0;
+}
+
+bool cp_slice_has_crash(const cp_study_data *data, cp_slice slice, const cp_study_crash *crash)
+{
+    size_t scenario = data->replication[crash->replication].scenario;
+    return (slice.scenario == CP_SLICE_ALL || slice.scenario == scenario) &&
+           (slice.crash_type == CP_SLICE_ALL || slice.crash_type == crash->crash_type);
+}
+
+// Cluster of a replication in a set, SIZE_MAX when it is not there; the set is ascending.
+static size_t cluster_of(const cp_replication_set *set, size_t replication)
+{
+    size_t low = 0, high = set->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (set->replication[middle] < replication)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < set->count && set->replication[low] == replication ? low : SIZE_MAX;
+}
+
+cp_status cp_replication_set_create(const cp_study_data *data, cp_slice slice, size_t variant,
+                                    cp_replication_set *set, cp_error *error)
+{
+    *set = (cp_replication_set){0};
+    set->replication = calloc(data->replication_count + 1, sizeof *set->replication);
+    set->stratum = calloc(data->replication_count + 1, sizeof *set->stratum);
+    set->frontal_crashes = calloc(data->replication_count + 1, sizeof *set->frontal_crashes);
+    set->vehicle_km = calloc(data->replication_count + 1, sizeof *set->vehicle_km);
+    if (!set->replication || !set->stratum || !set->frontal_crashes || !set->vehicle_km) {
+        cp_replication_set_destroy(set);
+        return cp_fail_memory(error, "the replications of a variant");
+    }
+
+    // Replications without a crash are clusters too: their exposure counts.
+    for (size_t k = 0; k < data->replication_count; k++) {
+        const cp_study_replication *replication = &data->replication[k];
+        if (replication->variant != variant ||
+            (slice.scenario != CP_SLICE_ALL && slice.scenario != replication->scenario))
+            continue;
+        set->replication[set->count] = k;
+        set->stratum[set->count] = replication->scenario;
+        set->vehicle_km[set->count++] = replication->vehicle_km;
+    }
+    for (size_t k = 0; k < data->crash_count; k++) {
+        const cp_study_crash *crash = &data->crash[k];
+        size_t cluster = cluster_of(set, crash->replication);
+        if (cluster != SIZE_MAX && crash->frontal && cp_slice_has_crash(data, slice, crash))
+            set->frontal_crashes[cluster]++;
+    }
+    return CP_OK;
+}
+
+void cp_replication_set_destroy(cp_replication_set *set)
+{
+    free(set->replication);
+    free(set->stratum);
+    free(set->frontal_crashes);
+    free(set->vehicle_km);
+    *set = (cp_replication_set){0};
+}
+
+static void keep(cp_replication_set *set, size_t to, size_t from)
+{
+    set->replication[to] = set->replication[from];
+    set->stratum[to] = set->stratum[from];
+    set->frontal_crashes[to] = set->frontal_crashes[from];
+    set->vehicle_km[to] = set->vehicle_km[from];
+}
+
+// Order of two replications by what pairs them.
+static int pair_order(const cp_study_replication *a, const cp_study_replication *b)
+{
+    if (a->scenario != b->scenario)
+        return a->scenario < b->scenario ? -1 : 1;
+    if (a->number != b->number)
+        return a->number < b->number ? -1 : 1;
+    return (a->seed > b->seed) - (a->seed < b->seed);
+}
+
+void cp_replication_set_match(const cp_study_data *data, cp_replication_set *a,
+                              cp_replication_set *b)
+{
+    // Both are in order of scenario and number: one walk over the two.
+    size_t i = 0, j = 0, kept = 0;
+    while (i < a->count && j < b->count) {
+        int order = pair_order(&data->replication[a->replication[i]],
+                               &data->replication[b->replication[j]]);
+        if (order == 0) {
+            keep(a, kept, i);
+            keep(b, kept, j);
+            kept++;
+        }
+        i += order <= 0;
+        j += order >= 0;
+    }
+    a->count = b->count = kept;
+}
+
+cp_exposure cp_replication_set_exposure(const cp_replication_set *set)
+{
+    return (cp_exposure){set->count, set->frontal_crashes, set->vehicle_km};
+}
+
+// NAN: no observation; -INFINITY: below every value.
+static double observation(const cp_study_vehicle *vehicle, cp_slice_quantity quantity)
+{
+    if (quantity == CP_QUANTITY_CLOSING_SPEED)
+        return vehicle->closing_speed_m_s;
+    if (vehicle->olc == CP_OLC_FAILED)
+        return NAN;
+    if (quantity == CP_QUANTITY_DELTA_V)
+        return vehicle->delta_v_m_s;
+    return vehicle->olc == CP_OLC_KNOWN ? vehicle->olc_g : -INFINITY;
+}
+
+cp_status cp_slice_sample(const cp_study_data *data, const cp_replication_set *set, cp_slice slice,
+                          int scope, cp_slice_quantity quantity, cp_sample *sample, cp_error *error)
+{
+    double *value = calloc(data->vehicle_count + 1, sizeof *value);
+    size_t *cluster = calloc(data->vehicle_count + 1, sizeof *cluster);
+    cp_status status = CP_NO_MEMORY;
+    size_t count = 0;
+    if (!value || !cluster) {
+        status = cp_fail_memory(error, "a sample");
+        goto done;
+    }
+    for (size_t k = 0; k < data->vehicle_count; k++) {
+        const cp_study_vehicle *vehicle = &data->vehicle[k];
+        const cp_study_crash *crash = &data->crash[vehicle->crash];
+        double seen = observation(vehicle, quantity);
+        size_t own = cluster_of(set, crash->replication);
+        if (own == SIZE_MAX || isnan(seen) || !cp_slice_has_crash(data, slice, crash) ||
+            (scope == CP_SCOPE_INSIDE && vehicle->validity != 0))
+            continue;
+        value[count] = seen;
+        cluster[count++] = own;
+    }
+    status = cp_sample_create(value, cluster, count, set->count, sample, error);
+
+done:
+    free(value);
+    free(cluster);
+    return status;
+}

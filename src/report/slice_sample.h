@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef REPORT_SLICE_SAMPLE_H
+#define REPORT_SLICE_SAMPLE_H
+
+#include "report/comparison.h"
+
+/* From the rows of a study to what statistics take: exposures and samples by replication. */
+
+bool cp_study_crash_front_front(const cp_study_data *data, const cp_study_crash *crash);
+
+/* Whether a crash belongs to a slice. */
+bool cp_slice_has_crash(const cp_study_data *data, cp_slice slice, const cp_study_crash *crash);
+
+/* The finished replications of a variant in a slice; each is a cluster, its scenario a stratum. */
+typedef struct cp_replication_set {
+    size_t count;
+    size_t *replication; /* index of each cluster's replication, ascending */
+    size_t *stratum;
+    double *frontal_crashes; /* in the slice */
+    double *vehicle_km;
+} cp_replication_set;
+
+/* The caller destroys. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_replication_set_create(const cp_study_data *data, cp_slice slice,
+                                                  size_t variant, cp_replication_set *set,
+                                                  cp_error *error);
+/* A zero-initialised set is fine too. */
+void cp_replication_set_destroy(cp_replication_set *set);
+
+/* Leave in both sets only replications with a partner: same scenario, number and seed. Cluster k
+ * of a is then the partner of cluster k of b. */
+void cp_replication_set_match(const cp_study_data *data, cp_replication_set *a,
+                              cp_replication_set *b);
+
+/* Frontal crashes over vehicle-km; borrows from the set. */
+cp_exposure cp_replication_set_exposure(const cp_replication_set *set);
+
+typedef enum cp_slice_quantity {
+    CP_QUANTITY_OLC,
+    CP_QUANTITY_DELTA_V,
+    CP_QUANTITY_CLOSING_SPEED
+} cp_slice_quantity;
+
+/* A quantity of the frontally struck vehicles of the set's replications; scope is CP_SCOPE_... A
+ * failed crash simulation gives no observation of OLC and delta-v. The caller destroys. Error:
+ * CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_slice_sample(const cp_study_data *data, const cp_replication_set *set,
+                                        cp_slice slice, int scope, cp_slice_quantity quantity,
+                                        cp_sample *sample, cp_error *error);
+
+#endif

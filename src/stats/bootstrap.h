@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STATS_BOOTSTRAP_H
+#define STATS_BOOTSTRAP_H
+
+#include "core/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Confidence intervals by resampling whole clusters (replications): values of one replication are
+ * not independent. Bias-corrected and accelerated (Efron 1987). */
+
+/* Fewer clusters than this in either group give no interval: its coverage cannot be trusted. */
+#define CP_BOOTSTRAP_CLUSTERS_MIN 20
+
+/* X(name, text in results). */
+#define CP_INTERVAL_STATUSES(X)                                                                    \
+    X(CP_INTERVAL_UNDEFINED, "undefined")                                                          \
+    X(CP_INTERVAL_VALUE, "value")                                                                  \
+    X(CP_INTERVAL_TOO_FEW_REPLICATIONS, "too few replications")
+
+typedef enum cp_interval_status {
+#define CP_INTERVAL_NAME(name, text) name,
+    CP_INTERVAL_STATUSES(CP_INTERVAL_NAME)
+#undef CP_INTERVAL_NAME
+} cp_interval_status;
+
+typedef struct cp_interval {
+    cp_interval_status status;
+    double
+        low; /* NAN unless status is CP_INTERVAL_VALUE; -INFINITY where censoring leaves it open */
+    double high; /* likewise, +INFINITY */
+} cp_interval;
+
+const char *cp_interval_status_text(cp_interval_status status);
+
+/* The clusters of one group or of two to be compared. */
+typedef struct cp_resampling {
+    size_t cluster_count[2];  /* [1] = 0: one group only */
+    const size_t *stratum[2]; /* of each cluster (its scenario); NULL: one stratum. Clusters are
+                                 drawn within their stratum, whose size is fixed by design */
+    bool paired;              /* cluster k of both groups ran the same seed and is drawn together;
+                                 then both counts and strata are equal */
+    size_t repetitions;       /* default 2000 */
+    uint64_t seed;
+    double level_1; /* of confidence, default 0.95 */
+} cp_resampling;
+
+/* All fields at their defaults, no clusters, seed 1. */
+cp_resampling cp_resampling_default(void);
+
+/* A statistic of the resample in which cluster k of group g occurs weight_g[k] times. NAN where it
+ * does not exist (nothing was drawn); +-INFINITY where censoring leaves it open. weight_b is NULL
+ * for one group. */
+typedef double (*cp_statistic)(const unsigned *weight_a, const unsigned *weight_b,
+                               const void *context);
+
+/* The interval of a statistic. The same input gives the same bits. Undefined when the statistic
+ * itself, or more than one resample in twenty, does not exist, or when all resamples agree on one
+ * side of the estimate. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_bootstrap(const cp_resampling *resampling, cp_statistic statistic,
+                                     const void *context, cp_interval *interval, cp_error *error);
+
+#endif

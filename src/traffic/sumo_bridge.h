@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef TRAFFIC_SUMO_BRIDGE_H
+#define TRAFFIC_SUMO_BRIDGE_H
+
+/* C interface over libsumo. Conventions:
+ *  - One simulation per process (libsumo's rule); one thread only.
+ *  - No C++ exception crosses: every failure is a cp_status with SUMO's own message in the error
+ *    (CP_BAD_INPUT from a configuration that cannot be started, CP_TRAFFIC_FAILED later).
+ *  - SUMO's abort() on a failed assertion is not caught: callers run this in a worker process.
+ *  - Frame and units: plane x east, y north, m; headings counter-clockwise from +x, rad, in
+ *    (-pi, pi]; speeds m/s; time s. SUMO's degrees clockwise from north never leave the bridge.
+ *  - Positions are of the middle of the front bumper.
+ *  - Vehicles, types and lanes are numbered when first seen (0, 1, 2, ...); numbers stay for the
+ *    life of the simulation and are never reused, names are looked up by number.
+ *  - Text returned is owned by the bridge and valid until sumo_bridge_stop. Arrays returned by
+ *    sumo_bridge_step are valid until the next step.
+ *  - The header compiles as C and as C++. */
+
+#include "core/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SUMO_BRIDGE_NONE UINT32_MAX
+
+/* One vehicle on the road at the end of a step. */
+typedef struct cp_vehicle_state {
+    uint32_t vehicle; /* number, see sumo_bridge_vehicle_id */
+    uint32_t type;    /* number, see sumo_bridge_type_id */
+    uint32_t lane;    /* number, see sumo_bridge_lane_id */
+    double front_x_m;
+    double front_y_m;
+    double yaw_rad;
+    double speed_m_s; /* forward */
+    double acceleration_m_s2;
+    double lane_position_m; /* front, along the lane */
+    double length_m;
+    double width_m;
+} cp_vehicle_state;
+
+/* One collision as SUMO itself reports it. */
+typedef struct cp_sumo_collision {
+    uint32_t collider;
+    uint32_t victim;
+    const char *type; /* "collision", "frontal", "junction", ... */
+} cp_sumo_collision;
+
+/* Start a simulation. options: option_count further SUMO command line words
+ * ("--lateral-resolution", "0.8"), which override the configuration; the bridge appends
+ * housekeeping (--no-step-log), the options every run of ours sets (ballistic update,
+ * collision.action warn, junction checks, mingap-factor 0, thread-rngs: at least one random stream
+ * a lane) and seed and step length last; a word of those in options is refused by SUMO as given
+ * twice. SUMO takes 31 bits of the seed. begin/end times stay those of the configuration. Sets
+ * SUMO_HOME when it is unset. SUMO's warnings go to stderr (but those of collisions and emergency
+ * braking, which are what a run is for), its errors into error. */
+CP_MUST_CHECK cp_status sumo_bridge_start(const char *sumocfg, uint64_t seed, double step_length_s,
+                                          const char *const *options, size_t option_count,
+                                          cp_error *error);
+/* Close; safe without a start and after a failure. */
+void sumo_bridge_stop(void);
+
+/* Advance one step; states of all vehicles on the road after it, in SUMO's order. */
+CP_MUST_CHECK cp_status sumo_bridge_step(const cp_vehicle_state **states, size_t *count,
+                                         cp_error *error);
+/* SUMO's clock after the last step, s. */
+double sumo_bridge_time_s(void);
+/* Vehicles loaded but not yet arrived, waiting ones included: 0 means nothing more will come. */
+int sumo_bridge_expected_vehicles(void);
+/* Version text of the linked SUMO, "SUMO 1.15.0". */
+const char *sumo_bridge_version(void);
+/* The complete command line of the last start, words separated by blanks. */
+const char *sumo_bridge_command_line(void);
+
+/* SUMO's own collisions of the last step. Valid until the next step. */
+CP_MUST_CHECK cp_status sumo_bridge_collisions(const cp_sumo_collision **collisions, size_t *count,
+                                               cp_error *error);
+
+/* Names; "" for a number never given out. */
+const char *sumo_bridge_vehicle_id(uint32_t vehicle);
+const char *sumo_bridge_type_id(uint32_t type);
+const char *sumo_bridge_lane_id(uint32_t lane);
+
+/* Vehicles inserted in the last step. Valid until the next step. */
+CP_MUST_CHECK cp_status sumo_bridge_departed(const uint32_t **vehicles, size_t *count,
+                                             cp_error *error);
+/* Vehicles that were on the road after the step before and are not after the last one (arrived,
+ * removed or teleporting). Valid until the next step. */
+CP_MUST_CHECK cp_status sumo_bridge_gone(const uint32_t **vehicles, size_t *count, cp_error *error);
+
+/* Commands. A vehicle that is gone is CP_TRAFFIC_FAILED. */
+CP_MUST_CHECK cp_status sumo_bridge_remove(uint32_t vehicle, cp_error *error);
+/* Command a speed for the coming step; negative hands the vehicle back to SUMO's driver. */
+CP_MUST_CHECK cp_status sumo_bridge_set_speed(uint32_t vehicle, double speed_m_s, cp_error *error);
+/* SUMO's speed mode bit set (31 = all checks on). */
+CP_MUST_CHECK cp_status sumo_bridge_set_speed_mode(uint32_t vehicle, int mode, cp_error *error);
+CP_MUST_CHECK cp_status sumo_bridge_speed_mode(uint32_t vehicle, int *mode, cp_error *error);
+CP_MUST_CHECK cp_status sumo_bridge_set_parameter(uint32_t vehicle, const char *key,
+                                                  const char *value, cp_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "traffic/traffic.h"
+
+#include "core/geometry.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct cp_traffic {
+    const cp_traffic_source *source;
+    double step_length_s;
+    double time_s;
+    cp_vehicle_motion *motions; /* of the last step */
+    size_t count;
+    cp_vehicle_motion *previous; /* of the step before */
+    size_t previous_count;
+    size_t capacity;  /* of both */
+    uint32_t *row_of; /* by vehicle number: row in motions, or SUMO_BRIDGE_NONE */
+    size_t numbers;   /* length of row_of */
+    const uint32_t *departed;
+    size_t departed_count;
+    cp_exposure exposure;
+};
+
+cp_status cp_traffic_create_from(const cp_traffic_source *source, double step_length_s,
+                                 cp_traffic **traffic, cp_error *error)
+{
+    *traffic = NULL;
+    if (!(step_length_s > 0.0))
+        return cp_fail(error, CP_BAD_INPUT, "step_length_s must be > 0, found %g", step_length_s);
+    cp_traffic *created = calloc(1, sizeof *created);
+    if (!created)
+        return cp_fail_memory(error, "traffic");
+    created->source = source;
+    created->step_length_s = step_length_s;
+    created->time_s = source->time_s();
+    *traffic = created;
+    return CP_OK;
+}
+
+void cp_traffic_destroy(cp_traffic *traffic)
+{
+    if (!traffic)
+        return;
+    traffic->source->stop();
+    free(traffic->motions);
+    free(traffic->previous);
+    free(traffic->row_of);
+    free(traffic);
+}
+
+static cp_status reserve_motions(cp_traffic *traffic, size_t count, cp_error *error)
+{
+    if (count <= traffic->capacity)
+        return CP_OK;
+    size_t capacity = 2 * count;
+    cp_vehicle_motion *motions = realloc(traffic->motions, capacity * sizeof *motions);
+    if (motions)
+        traffic->motions = motions;
+    cp_vehicle_motion *previous = realloc(traffic->previous, capacity * sizeof *previous);
+    if (previous)
+        traffic->previous = previous;
+    if (!motions || !previous)
+        return cp_fail_memory(error, "vehicle states");
+    traffic->capacity = capacity;
+    return CP_OK;
+}
+
+static cp_status reserve_numbers(cp_traffic *traffic, uint32_t vehicle, cp_error *error)
+{
+    if (vehicle < traffic->numbers)
+        return CP_OK;
+    size_t numbers = 2 * ((size_t)vehicle + 1);
+    uint32_t *row_of = realloc(traffic->row_of, numbers * sizeof *row_of);
+    if (!row_of)
+        return cp_fail_memory(error, "vehicle numbers");
+    for (size_t k = traffic->numbers; k < numbers; k++)
+        row_of[k] = SUMO_BRIDGE_NONE;
+    traffic->row_of = row_of;
+    traffic->numbers = numbers;
+    return CP_OK;
+}
+
+// A vehicle that moved much further than its speeds explain was put there (teleport, moveTo).
+static bool has_jumped(const cp_vehicle_state *before, const cp_vehicle_state *after,
+                       double step_length_s)
+{
+    double chord_m =
+        hypot(after->front_x_m - before->front_x_m, after->front_y_m - before->front_y_m);
+    double fastest_m_s = fmax(fmax(before->speed_m_s, after->speed_m_s), 0.0);
+    // One lane sideways (instant lane change) is no jump.
+    double lane_width_m = 5.0;
+    return chord_m > 1.5 * fastest_m_s * step_length_s + lane_width_m;
+}
+
+static cp_vehicle_motion motion_to(const cp_traffic *traffic, const cp_vehicle_state *after)
+{
+    cp_vehicle_motion motion = {.after = *after};
+    uint32_t row = traffic->row_of[after->vehicle];
+    if (row == SUMO_BRIDGE_NONE)
+        return motion;
+    const cp_vehicle_state *before = &traffic->previous[row].after;
+    if (has_jumped(before, after, traffic->step_length_s))
+        return motion;
+    motion.before = *before;
+    motion.was_present = true;
+    motion.yaw_rate_rad_s =
+        cp_wrap_angle(after->yaw_rad - before->yaw_rad) / traffic->step_length_s;
+    return motion;
+}
+
+cp_status cp_traffic_step(cp_traffic *traffic, cp_error *error)
+{
+    const cp_vehicle_state *states;
+    size_t count;
+    cp_status status = traffic->source->step(&states, &count, error);
+    if (status != CP_OK)
+        return status;
+    if ((status = reserve_motions(traffic, count, error)) != CP_OK)
+        return status;
+    for (size_t k = 0; k < count; k++)
+        if ((status = reserve_numbers(traffic, states[k].vehicle, error)) != CP_OK)
+            return status;
+
+    // What was now is before; row_of still points into it.
+    cp_vehicle_motion *spare = traffic->previous;
+    traffic->previous = traffic->motions;
+    traffic->previous_count = traffic->count;
+    traffic->motions = spare;
+    traffic->count = count;
+    for (size_t k = 0; k < count; k++)
+        traffic->motions[k] = motion_to(traffic, &states[k]);
+    for (size_t k = 0; k < traffic->previous_count; k++)
+        traffic->row_of[traffic->previous[k].after.vehicle] = SUMO_BRIDGE_NONE;
+    for (size_t k = 0; k < count; k++)
+        traffic->row_of[states[k].vehicle] = (uint32_t)k;
+
+    // Exposure: the ballistic update drives the mean of both speeds.
+    double dt_s = traffic->step_length_s;
+    traffic->time_s = traffic->source->time_s();
+    for (size_t k = 0; k < count; k++) {
+        const cp_vehicle_motion *motion = &traffic->motions[k];
+        if (!motion->was_present)
+            continue;
+        double mean_m_s = 0.5 * (motion->before.speed_m_s + motion->after.speed_m_s);
+        traffic->exposure.vehicle_km += mean_m_s * dt_s / 1000.0;
+        traffic->exposure.vehicle_h += dt_s / 3600.0;
+    }
+    status = traffic->source->departed(&traffic->departed, &traffic->departed_count, error);
+    if (status == CP_OK)
+        traffic->exposure.departed += traffic->departed_count;
+    return status;
+}
+
+double cp_traffic_time_s(const cp_traffic *traffic)
+{
+    return traffic->time_s;
+}
+
+double cp_traffic_step_length_s(const cp_traffic *traffic)
+{
+    return traffic->step_length_s;
+}
+
+bool cp_traffic_finished(const cp_traffic *traffic)
+{
+    return traffic->source->expected_vehicles() == 0;
+}
+
+const cp_vehicle_motion *cp_traffic_motions(const cp_traffic *traffic, size_t *count)
+{
+    *count = traffic->count;
+    return traffic->motions;
+}
+
+const cp_vehicle_motion *cp_traffic_motion_of(const cp_traffic *traffic, uint32_t vehicle)
+{
+    if (vehicle >= traffic->numbers || traffic->row_of[vehicle] == SUMO_BRIDGE_NONE)
+        return NULL;
+    return &traffic->motions[traffic->row_of[vehicle]];
+}
+
+const uint32_t *cp_traffic_departed(const cp_traffic *traffic, size_t *count)
+{
+    *count = traffic->departed_count;
+    return traffic->departed;
+}
+
+const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle)
+{
+    return traffic->source->vehicle_id(vehicle);
+}
+
+const cp_traffic_source *cp_traffic_commands(const cp_traffic *traffic)
+{
+    return traffic->source;
+}
+
+cp_exposure cp_traffic_exposure(const cp_traffic *traffic)
+{
+    return traffic->exposure;
+}
+
+cp_status cp_traffic_remove(cp_traffic *traffic, uint32_t vehicle, cp_error *error)
+{
+    const cp_vehicle_motion *motion = cp_traffic_motion_of(traffic, vehicle);
+    if (!motion)
+        return CP_OK;
+    cp_status status = traffic->source->remove(vehicle, error);
+    if (status != CP_OK)
+        return status;
+    // Close the gap, keeping the order of the others.
+    size_t row = traffic->row_of[vehicle];
+    memmove(&traffic->motions[row], &traffic->motions[row + 1],
+            (traffic->count - row - 1) * sizeof *traffic->motions);
+    traffic->count--;
+    traffic->row_of[vehicle] = SUMO_BRIDGE_NONE;
+    for (size_t k = row; k < traffic->count; k++)
+        traffic->row_of[traffic->motions[k].after.vehicle] = (uint32_t)k;
+    return CP_OK;
+}

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef TRAFFIC_TRAFFIC_H
+#define TRAFFIC_TRAFFIC_H
+
+#include "traffic/sumo_bridge.h"
+
+/* The step loop around the bridge: this step's and last step's states matched per vehicle,
+ * exposure, removal of crashed cars. One a process. */
+
+/* Motion of one vehicle through the step that has just ended. */
+typedef struct cp_vehicle_motion {
+    cp_vehicle_state before; /* at the beginning of the step; valid if was_present */
+    cp_vehicle_state after;
+    double yaw_rate_rad_s; /* mean over the step; 0 unless was_present */
+    bool was_present;      /* false: inserted in this step, or jumped (teleport) */
+} cp_vehicle_motion;
+
+typedef struct cp_traffic cp_traffic;
+
+/* Where the states come from and the commands go to: SUMO through the bridge, or a scripted road in
+ * a test. The functions mean what those of sumo_bridge.h mean. */
+typedef struct cp_traffic_source {
+    cp_status (*step)(const cp_vehicle_state **states, size_t *count, cp_error *error);
+    cp_status (*departed)(const uint32_t **vehicles, size_t *count, cp_error *error);
+    double (*time_s)(void);
+    int (*expected_vehicles)(void);
+    const char *(*vehicle_id)(uint32_t vehicle);
+    cp_status (*remove)(uint32_t vehicle, cp_error *error);
+    cp_status (*set_speed)(uint32_t vehicle, double speed_m_s, cp_error *error);
+    cp_status (*set_speed_mode)(uint32_t vehicle, int mode, cp_error *error);
+    cp_status (*speed_mode)(uint32_t vehicle, int *mode, cp_error *error);
+    cp_status (*set_parameter)(uint32_t vehicle, const char *key, const char *value,
+                               cp_error *error);
+    void (*stop)(void);
+} cp_traffic_source;
+
+typedef struct cp_traffic_options {
+    const char *sumocfg;
+    uint64_t seed;
+    double step_length_s;       /* default 0.05 */
+    const char *const *options; /* further SUMO words */
+    size_t option_count;
+} cp_traffic_options;
+
+/* Exposure so far. */
+typedef struct cp_exposure {
+    double vehicle_km;
+    double vehicle_h;
+    size_t departed; /* vehicles inserted */
+} cp_exposure;
+
+CP_MUST_CHECK cp_status cp_traffic_create(const cp_traffic_options *options, cp_traffic **traffic,
+                                          cp_error *error);
+/* The same over a source that is started already; it must outlive the traffic, whose destroy stops
+ * it. (cp_traffic_create is in the library cp_sumo_bridge, all else in cp_traffic.) */
+CP_MUST_CHECK cp_status cp_traffic_create_from(const cp_traffic_source *source,
+                                               double step_length_s, cp_traffic **traffic,
+                                               cp_error *error);
+void cp_traffic_destroy(cp_traffic *traffic); /* NULL is fine */
+
+/* Advance one step. */
+CP_MUST_CHECK cp_status cp_traffic_step(cp_traffic *traffic, cp_error *error);
+double cp_traffic_time_s(const cp_traffic *traffic); /* end of the last step */
+double cp_traffic_step_length_s(const cp_traffic *traffic);
+bool cp_traffic_finished(const cp_traffic *traffic); /* nothing on the road, nothing to come */
+const cp_vehicle_motion *cp_traffic_motions(const cp_traffic *traffic, size_t *count);
+/* Motion of one vehicle, NULL when it is not on the road. */
+const cp_vehicle_motion *cp_traffic_motion_of(const cp_traffic *traffic, uint32_t vehicle);
+/* Vehicles inserted in the last step, in SUMO's order; valid until the next step. */
+const uint32_t *cp_traffic_departed(const cp_traffic *traffic, size_t *count);
+const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle);
+/* Where to send commands for the coming step. */
+const cp_traffic_source *cp_traffic_commands(const cp_traffic *traffic);
+cp_exposure cp_traffic_exposure(const cp_traffic *traffic);
+/* Take a crashed vehicle off the road now; gone already is fine. */
+CP_MUST_CHECK cp_status cp_traffic_remove(cp_traffic *traffic, uint32_t vehicle, cp_error *error);
+
+#endif

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "traffic/traffic.h"
+
+static const cp_traffic_source SUMO = {
+    .step = sumo_bridge_step,
+    .departed = sumo_bridge_departed,
+    .time_s = sumo_bridge_time_s,
+    .expected_vehicles = sumo_bridge_expected_vehicles,
+    .vehicle_id = sumo_bridge_vehicle_id,
+    .remove = sumo_bridge_remove,
+    .set_speed = sumo_bridge_set_speed,
+    .set_speed_mode = sumo_bridge_set_speed_mode,
+    .speed_mode = sumo_bridge_speed_mode,
+    .set_parameter = sumo_bridge_set_parameter,
+    .stop = sumo_bridge_stop,
+};
+
+cp_status cp_traffic_create(const cp_traffic_options *options, cp_traffic **traffic,
+                            cp_error *error)
+{
+    *traffic = NULL;
+    cp_status status = sumo_bridge_start(options->sumocfg, options->seed, options->step_length_s,
+                                         options->options, options->option_count, error);
+    if (status != CP_OK)
+        return status;
+    status = cp_traffic_create_from(&SUMO, options->step_length_s, traffic, error);
+    if (status != CP_OK)
+        sumo_bridge_stop();
+    return status;
+}

@@ -1,0 +1,185 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A report in a headless browser: no errors, no requests, filters agree with SQL, three widths."""
+import argparse
+import json
+import pathlib
+import re
+import sqlite3
+import subprocess
+import unittest
+import xml.etree.ElementTree
+
+from webdriver import Browser
+
+parser = argparse.ArgumentParser()
+parser.add_argument("--crashpulse", required=True)
+parser.add_argument("--db", required=True)
+parser.add_argument("--output", required=True, help="folder for the report and screenshots")
+ARGS = parser.parse_args()
+OUTPUT = pathlib.Path(ARGS.output)
+REPORT = OUTPUT / "report.html"
+
+FIGURES = ["figure-rate", "figure-ecdf", "figure-scatter", "figure-map"]
+
+# What the downloads would write, caught instead of saved.
+CATCH_DOWNLOADS = """
+window.caught = [];
+URL.createObjectURL = blob => { window.caught.push(blob); return "#"; };
+"""
+
+
+class Report(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        OUTPUT.mkdir(parents=True, exist_ok=True)
+        subprocess.run([ARGS.crashpulse, "report", ARGS.db, "--output", REPORT], check=True)
+        cls.page = REPORT.read_text(encoding="utf-8")
+        cls.db = sqlite3.connect(f"file:{ARGS.db}?mode=ro", uri=True)
+        cls.browser = Browser().__enter__()
+        cls.addClassCleanup(cls.browser.__exit__)
+
+    def setUp(self):
+        self.browser.resize(1440, 900)
+        self.browser.log("browser")
+        self.browser.log("performance")
+        self.browser.open(REPORT.resolve().as_uri())
+        self.browser.settle()
+
+    def tearDown(self):
+        entries = [e["message"] for e in self.browser.log("browser")]
+        self.assertEqual(entries, [], "messages on the console")
+
+    def choose(self, scenario="", crash_type="", scope="all"):
+        self.browser.run("""
+            const set = (id, value) => { const s = document.getElementById(id); s.value = value;
+                                         s.dispatchEvent(new Event("change")); };
+            set("scenario", arguments[0]); set("crash-type", arguments[1]);
+            document.querySelector(`input[name=scope][value=${arguments[2]}]`).click();
+        """, scenario, crash_type, scope)
+
+    def card(self, variant, figure):
+        text = self.browser.run("return document.querySelector(`[data-variant='${arguments[0]}'] "
+                                "[data-figure='${arguments[1]}']`).firstChild.textContent",
+                                variant, figure)
+        return text.replace("\u2009", "").replace("\u202f", "").replace(" ", "")
+
+    def count(self, sql, *values):
+        return self.db.execute(sql, values).fetchone()[0]
+
+    def test_requests_nothing_but_itself(self):
+        urls = []
+        for entry in self.browser.log("performance"):
+            message = json.loads(entry["message"])["message"]
+            if message["method"] == "Network.requestWillBeSent":
+                urls.append(message["params"]["request"]["url"])
+        self.assertEqual([u for u in urls if not u.startswith(("file:", "data:", "blob:"))], [])
+        self.assertEqual(re.findall(r'(?:src|href)="(?!#|data:)[^"]*"', self.page), [])
+
+    def test_text_of_the_study_stays_text(self):
+        question = self.count("SELECT question FROM study")
+        self.assertIn("</script>", question)
+        self.assertEqual(self.browser.run("return document.title"), "invented – crashpulse")
+        self.assertEqual(
+            self.browser.run("return document.getElementById('question').textContent"), question)
+
+    def test_answer_and_licence_are_there(self):
+        answer = self.browser.run("return document.getElementById('answer').textContent")
+        frontal = self.count("SELECT frontal_crashes FROM olc_by_variant WHERE is_baseline = 1")
+        inside = self.count("SELECT count(*) FROM crash_list WHERE variant = 'baseline' AND "
+                            "crash_type = 'front-front' AND validity = 'inside'")
+        self.assertIn(f"{frontal} frontal crashes with baseline ({inside} of them front-front", answer)
+        self.assertIn("failed_to_see with probability 0.05", answer)
+        self.assertIn("conditional on the assumed driver errors", answer)
+        self.assertIn("Copyright 2010-2017 Mike Bostock", self.page)
+        self.assertNotIn("injur", self.page.split('id="data"')[0].lower())
+
+    def test_filters_agree_with_sql(self):
+        scenarios = [""] + [row[0] for row in self.db.execute("SELECT name FROM scenario")]
+        types = ["", "front-front", "front-rear", "front-side"]
+        seen = set()
+        for scenario in scenarios:
+            for crash_type in types:
+                self.choose(scenario, crash_type)
+                for variant in ("baseline", "aeb"):
+                    where = ("variant = ?1 AND (?2 = '' OR scenario = ?2) AND "
+                             "(?3 = '' OR crash_type = ?3)")
+                    values = (variant, scenario, crash_type)
+                    crashes = self.count(f"SELECT count(*) FROM crash_list WHERE frontal AND {where}",
+                                         *values)
+                    vehicles = self.count(f"SELECT count(*) FROM frontal_vehicle WHERE {where}",
+                                          *values)
+                    self.assertEqual(self.card(variant, "frontal_crashes"), str(crashes))
+                    self.assertEqual(self.card(variant, "frontal_vehicles"), str(vehicles))
+                    seen.add(crashes)
+                points = self.browser.run("return document.querySelectorAll('#figure-scatter .point').length")
+                with_value = self.count("SELECT count(*) FROM frontal_vehicle WHERE olc_g IS NOT NULL "
+                                        "AND (?1 = '' OR scenario = ?1) AND (?2 = '' OR crash_type = ?2)",
+                                        scenario, crash_type)
+                self.assertEqual(points, with_value)
+        self.assertGreater(len(seen), 8, "filters change the counts")
+
+    def test_scope_shows_the_vehicles_inside_only(self):
+        self.choose(scope="inside")
+        points = self.browser.run("return document.querySelectorAll('#figure-scatter .point').length")
+        self.assertEqual(points, self.count("SELECT count(*) FROM frontal_vehicle "
+                                            "WHERE olc_g IS NOT NULL AND validity = 'inside'"))
+
+    def test_downloads_hold_the_data_of_the_figures(self):
+        self.browser.run(CATCH_DOWNLOADS)
+        for figure in FIGURES:
+            self.browser.run("document.querySelectorAll(`#${arguments[0]} .tools button`)"
+                             ".forEach(b => b.click())", figure)
+        texts = self.browser._call("POST", "/execute/async", {"args": [], "script":
+            "const done = arguments[0]; Promise.all(window.caught.map(b => b.text())).then(done);"})
+        self.assertEqual(len(texts), 2 * len(FIGURES))
+        ecdf = texts[2].strip().split("\n")
+        self.assertEqual(ecdf[0], "variant,olc_g,share")
+        first_aeb = next(line for line in ecdf if line.startswith("aeb"))
+        self.assertEqual(first_aeb.split(",")[1], "", "a censored curve starts above 0, without a value")
+        self.assertGreater(float(first_aeb.split(",")[2]), 0.0)
+        for svg in texts[1::2]:
+            root = xml.etree.ElementTree.fromstring(svg)
+            self.assertTrue(root.tag.endswith("svg"))
+            self.assertNotIn("var(--", re.sub(r'style="[^"]*"', "", svg))
+
+    def test_every_figure_has_words_and_a_table(self):
+        for figure in FIGURES:
+            label, rows = self.browser.run("""
+                const node = document.getElementById(arguments[0]);
+                node.querySelector("details").open = true;
+                node.querySelector("details").ontoggle();
+                return [node.querySelector("svg").getAttribute("aria-label"),
+                        node.querySelectorAll("table tbody tr").length];""", figure)
+            self.assertGreater(len(label), 10)
+            self.assertGreater(rows, 0)
+        unlabelled = self.browser.run("""
+            return Array.from(document.querySelectorAll("select, input, button")).filter(n =>
+                !n.closest("label") && !n.getAttribute("aria-label") && !n.textContent.trim()).length""")
+        self.assertEqual(unlabelled, 0)
+
+    def test_three_widths_and_two_themes(self):
+        for width in (390, 768, 1440):
+            for theme in ("light", "dark"):
+                self.browser.resize(width, 900)
+                self.browser.settle()
+                if self.browser.run("return document.documentElement.dataset.theme") != theme:
+                    self.browser.run("document.getElementById('theme').click()")
+                self.browser.settle()
+                wide = self.browser.run("return document.documentElement.scrollWidth")
+                self.assertLessEqual(wide, width, "the page scrolls sideways")
+                outside = self.browser.run("""
+                    return Array.from(document.querySelectorAll("figure svg text")).filter(t => {
+                        const own = t.getBoundingClientRect(), box = t.closest("figure").getBoundingClientRect();
+                        return own.left < box.left || own.right > box.right; }).length""")
+                self.assertEqual(outside, 0, "text of a figure is cut off")
+                height = self.browser.run("return document.documentElement.scrollHeight")
+                self.browser.resize(width, height)
+                self.browser.settle()
+                picture = OUTPUT / f"report-{width}-{theme}.png"
+                self.browser.screenshot(picture)
+                self.assertGreater(picture.stat().st_size, 20000)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["test_report.py"], verbosity=1)

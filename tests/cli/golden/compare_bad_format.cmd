@@ -1,0 +1,1 @@
+"$crashpulse" compare "$db" --format xml

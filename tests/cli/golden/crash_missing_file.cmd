@@ -1,0 +1,1 @@
+"$crashpulse" crash no_such_car.yaml --speed 56

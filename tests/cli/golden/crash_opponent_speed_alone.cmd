@@ -1,0 +1,1 @@
+"$crashpulse" crash car.yaml --speed 56 --opponent-speed 30

@@ -1,0 +1,1 @@
+"$crashpulse" report "$db" --output no_such_folder/x.html

@@ -1,0 +1,1 @@
+"$crashpulse" run study.yaml --db x.db --jobs 0

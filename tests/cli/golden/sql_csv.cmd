@@ -1,0 +1,1 @@
+"$crashpulse" sql "$db" -f csv "SELECT 0.1 AS x, NULL AS n, 3 AS i, 'a,b' AS t"

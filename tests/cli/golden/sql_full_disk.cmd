@@ -1,0 +1,1 @@
+[ -w /dev/full ] || exit 1; "$crashpulse" sql "$db" "SELECT 1" > /dev/full

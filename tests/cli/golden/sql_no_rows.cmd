@@ -1,0 +1,1 @@
+"$crashpulse" sql "$db" "SELECT id FROM crash WHERE 0"

@@ -1,0 +1,1 @@
+"$crashpulse" sql "$db" "DELETE FROM crash"

@@ -1,0 +1,1 @@
+"$crashpulse" validate nowhere.yaml --reference nowhere.csv

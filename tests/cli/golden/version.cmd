@@ -1,0 +1,1 @@
+"$crashpulse" --version | grep -c "^crashpulse [0-9]"

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef REPORT_SMALL_STUDY_H
+#define REPORT_SMALL_STUDY_H
+
+#include "store/store.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Open the invented study that the test sql.small_study builds. Include after cmocka.h. */
+static inline cp_store *open_small_study(void)
+{
+    const char *folder = getenv("CRASHPULSE_BUILD");
+    char path[4096];
+    cp_store *store = NULL;
+    cp_error error = {0};
+    snprintf(path, sizeof path, "%s/small_study.db", folder ? folder : ".");
+    if (cp_store_open(path, CP_STORE_READ, &store, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    return store;
+}
+
+#endif

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/comparison.h"
+
+#include "report/answer.h"
+#include "report/comparison_json.h"
+#include "report/slice_sample.h"
+#include "store/query.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "report/small_study.h"
+
+static const cp_slice EVERYTHING = {CP_SLICE_ALL, CP_SLICE_ALL};
+
+typedef struct fixture {
+    cp_store *store;
+    cp_study_data data;
+    cp_comparison comparison;
+} fixture;
+
+static int set_up(void **state)
+{
+    static fixture f;
+    cp_error error = {0};
+    cp_comparison_options options = cp_comparison_options_default();
+    f = (fixture){.store = open_small_study()};
+    if (cp_study_data_read(f.store, &f.data, &error) != CP_OK ||
+        cp_compare(&f.data, 0, EVERYTHING, &options, &f.comparison, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    *state = &f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    cp_comparison_destroy(&f->comparison);
+    cp_study_data_destroy(&f->data);
+    cp_store_close(f->store);
+    return 0;
+}
+
+// One number asked of the views, for a variant.
+static double asked(fixture *f, const char *column, const char *view, const char *variant)
+{
+    char sql[256];
+    double value = NAN;
+    cp_error error = {0};
+    snprintf(sql, sizeof sql, "SELECT %s FROM %s WHERE variant = '%s'", column, view, variant);
+    if (cp_query_number(f->store, sql, &value, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    return value;
+}
+
+static void figures_agree_with_the_views(void **state)
+{
+    fixture *f = *state;
+    assert_int_equal(f->comparison.variant_count, 2);
+    for (size_t k = 0; k < 2; k++) {
+        const cp_variant_figures *v = &f->comparison.variant[k];
+        const char *name = f->data.variant[v->variant].name;
+        assert_int_equal(v->replications, asked(f, "replications", "crash_rate_by_variant", name));
+        assert_int_equal(v->crashes, asked(f, "crashes", "olc_by_variant", name));
+        assert_int_equal(v->frontal_crashes, asked(f, "frontal_crashes", "olc_by_variant", name));
+        assert_int_equal(v->frontal_vehicles, asked(f, "frontal_vehicles", "olc_by_variant", name));
+        assert_int_equal(v->inside, asked(f, "inside_validity", "olc_by_variant", name));
+        assert_int_equal(v->simulation_failed,
+                         asked(f, "simulation_failed", "olc_by_variant", name));
+        assert_int_equal(v->olc_g[CP_SCOPE_ALL].censored,
+                         asked(f, "censored", "olc_by_variant", name));
+        assert_int_equal(v->olc_g[CP_SCOPE_ALL].count, v->frontal_vehicles - v->simulation_failed);
+        double median = asked(f, "olc_median_g", "olc_by_variant", name);
+        double rate = asked(f, "frontal_crashes_per_million_km", "crash_rate_by_variant", name);
+        assert_true(fabs(v->olc_g[CP_SCOPE_ALL].median.value - median) < 1e-9);
+        assert_true(fabs(v->rate - rate) < 1e-6 * rate);
+        assert_true(v->rate_garwood.low < rate && rate < v->rate_garwood.high);
+    }
+}
+
+// Sixteen replications a variant: no bootstrap interval, but a p-value.
+static void few_replications_give_p_and_no_interval(void **state)
+{
+    fixture *f = *state;
+    const cp_contrast_figures *c = &f->comparison.contrast[0];
+    assert_int_equal(f->comparison.contrast_count, 1);
+    assert_int_equal(c->replications[0], 16);
+    assert_int_equal(c->rate_ratio_bootstrap.status, CP_INTERVAL_TOO_FEW_REPLICATIONS);
+    assert_int_equal(c->olc_g[CP_SCOPE_ALL].median_interval.status,
+                     CP_INTERVAL_TOO_FEW_REPLICATIONS);
+    assert_true(c->rate_p > 0.0 && c->rate_p < 0.05);
+    assert_true(c->rate_ratio > 0.4 && c->rate_ratio < 0.6);
+    assert_true(c->olc_g[CP_SCOPE_ALL].cliffs_delta < 0.0);
+}
+
+// Slices of a filter cover everything once; a slice of rates keeps the whole exposure.
+static void slices_add_up(void **state)
+{
+    fixture *f = *state;
+    cp_error error = {0};
+    cp_comparison_options options = {.repetitions = 10, .permutations = 0};
+    size_t by_scenario = 0, by_type = 0;
+    for (size_t s = 0; s < f->data.scenario_count; s++) {
+        cp_comparison part;
+        assert_int_equal(
+            cp_compare(&f->data, 0, (cp_slice){s, CP_SLICE_ALL}, &options, &part, &error), CP_OK);
+        by_scenario += part.variant[0].frontal_crashes;
+        assert_int_equal(part.variant[0].replications, 8);
+        cp_comparison_destroy(&part);
+    }
+    for (size_t t = 0; t < f->data.crash_type_count; t++) {
+        cp_comparison part;
+        assert_int_equal(
+            cp_compare(&f->data, 0, (cp_slice){CP_SLICE_ALL, t}, &options, &part, &error), CP_OK);
+        by_type += part.variant[0].frontal_crashes;
+        assert_true(part.variant[0].vehicle_km == f->comparison.variant[0].vehicle_km);
+        cp_comparison_destroy(&part);
+    }
+    assert_int_equal(by_scenario, f->comparison.variant[0].frontal_crashes);
+    assert_int_equal(by_type, f->comparison.variant[0].frontal_crashes);
+}
+
+static void same_database_same_json(void **state)
+{
+    fixture *f = *state;
+    cp_error error = {0};
+    cp_comparison again;
+    cp_comparison_options options = cp_comparison_options_default();
+    assert_int_equal(cp_compare(&f->data, 0, EVERYTHING, &options, &again, &error), CP_OK);
+    json_t *first = cp_comparison_json(&f->data, &f->comparison);
+    json_t *second = cp_comparison_json(&f->data, &again);
+    assert_non_null(first);
+    assert_true(json_equal(first, second));
+    json_decref(first);
+    json_decref(second);
+    cp_comparison_destroy(&again);
+}
+
+static void answer_names_crashes_validity_and_assumptions(void **state)
+{
+    fixture *f = *state;
+    cp_error error = {0};
+    char *answer = NULL, expected[128];
+    assert_int_equal(cp_comparison_answer(&f->data, &f->comparison, &answer, &error), CP_OK);
+    for (size_t k = 0; k < 2; k++) {
+        const cp_variant_figures *v = &f->comparison.variant[k];
+        snprintf(expected, sizeof expected, "%zu frontal crashes with %s (%zu of them front-front",
+                 v->frontal_crashes, f->data.variant[k].name, v->front_front_inside);
+        assert_non_null(strstr(answer, expected));
+    }
+    assert_non_null(strstr(answer, "left_turn: failed_to_see with probability 0.05"));
+    assert_non_null(strstr(answer, "head_on_overtaking: risky_overtaking with probability 0.1"));
+    assert_non_null(strstr(answer, "conditional on the assumed driver errors"));
+    free(answer);
+}
+
+// A seed that only one variant finished has no partner and is left out of the paired comparison.
+static void pairs_are_the_seeds_both_finished(void **state)
+{
+    (void)state;
+    cp_study_replication replication[] = {
+        {.variant = 0, .number = 0, .seed = 70, .vehicle_km = 1.0},
+        {.variant = 1, .number = 0, .seed = 70, .vehicle_km = 2.0},
+        {.variant = 0, .number = 1, .seed = 71, .vehicle_km = 3.0},
+        {.variant = 1, .number = 2, .seed = 72, .vehicle_km = 4.0},
+        {.variant = 0, .number = 3, .seed = 73, .vehicle_km = 5.0},
+        {.variant = 1, .number = 3, .seed = 73, .vehicle_km = 6.0},
+    };
+    cp_study_data data = {.replication = replication, .replication_count = 6};
+    cp_replication_set a, b;
+    cp_error error = {0};
+    assert_int_equal(cp_replication_set_create(&data, EVERYTHING, 0, &a, &error), CP_OK);
+    assert_int_equal(cp_replication_set_create(&data, EVERYTHING, 1, &b, &error), CP_OK);
+    cp_replication_set_match(&data, &a, &b);
+    assert_int_equal(a.count, 2);
+    assert_int_equal(b.count, 2);
+    assert_true(a.vehicle_km[0] == 1.0 && b.vehicle_km[0] == 2.0);
+    assert_true(a.vehicle_km[1] == 5.0 && b.vehicle_km[1] == 6.0);
+    cp_replication_set_destroy(&a);
+    cp_replication_set_destroy(&b);
+}
+
+static void unknown_baseline_names_the_variants(void **state)
+{
+    fixture *f = *state;
+    cp_error error = {0};
+    size_t variant;
+    assert_int_equal(cp_study_data_variant(&f->data, "esp", &variant, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "baseline, aeb"));
+    assert_int_equal(cp_study_data_variant(&f->data, NULL, &variant, &error), CP_OK);
+    assert_int_equal(variant, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(figures_agree_with_the_views),
+        cmocka_unit_test(few_replications_give_p_and_no_interval),
+        cmocka_unit_test(slices_add_up),
+        cmocka_unit_test(same_database_same_json),
+        cmocka_unit_test(answer_names_crashes_validity_and_assumptions),
+        cmocka_unit_test(pairs_are_the_seeds_both_finished),
+        cmocka_unit_test(unknown_baseline_names_the_variants),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

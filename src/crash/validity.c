@@ -20,16 +20,13 @@ unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *mo
     const cp_vehicle_model *other = role == 0 ? model_b : model_a;
     unsigned outside = 0;
 
-    // A model without a calibrated range is outside everywhere.
-    if (own->calibrated_speed_max_m_s <= 0.0)
-        outside |= CP_OUTSIDE_MODEL;
-
     // Speed of a rigid-barrier crash with the same change of velocity.
     double share =
         configuration->against_barrier ? 1.0 : other->mass_kg / (own->mass_kg + other->mass_kg);
     double equivalent_m_s = description->closing_speed_m_s * share;
-    if (equivalent_m_s < own->calibrated_speed_min_m_s - ROUNDING ||
-        equivalent_m_s > own->calibrated_speed_max_m_s + ROUNDING)
+    bool calibrated = own->calibrated_speed_max_m_s > 0.0;
+    if (calibrated && (equivalent_m_s < own->calibrated_speed_min_m_s - ROUNDING ||
+                       equivalent_m_s > own->calibrated_speed_max_m_s + ROUNDING))
         outside |= CP_OUTSIDE_SPEED;
 
     // Offset as this vehicle sees it: of the middle of the other's front edge in its own frame.
@@ -41,10 +38,13 @@ unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *mo
             a->cog_m, cp_vec2_scale(cp_vec2_heading(a->yaw_rad), model_a->cg_to_front_m));
         offset_m = cp_pose_to_local(frame, front_m).y;
     }
-    if (fabs(offset_m) > own->calibrated_offset_max_m + ROUNDING)
+    if (calibrated && fabs(offset_m) > own->calibrated_offset_max_m + ROUNDING)
         outside |= CP_OUTSIDE_OFFSET;
-    if (fabs(description->angle_rad) > own->calibrated_angle_max_rad + ROUNDING)
+    if (calibrated && fabs(description->angle_rad) > own->calibrated_angle_max_rad + ROUNDING)
         outside |= CP_OUTSIDE_ANGLE;
+    // A model without a calibrated range has no other limits to be within.
+    if (!calibrated)
+        outside |= CP_OUTSIDE_MODEL;
     if (fabs(description->velocity_angle_rad[role]) > cp_rad_from_deg(OBLIQUE_LIMIT_DEG) + ROUNDING)
         outside |= CP_OUTSIDE_OBLIQUE_VELOCITY;
 

@@ -52,7 +52,7 @@ static void every_limit_is_named(void **state)
     assert_int_equal(validity_of(&car, NULL, 50.0, 0.0, 1060.0, 0.0, 0), CP_OUTSIDE_OFFSET);
     assert_int_equal(validity_of(&car, NULL, 50.0, 0.0, 0.0, 31.0, 0), CP_OUTSIDE_ANGLE);
     cp_vehicle_model never = cp_vehicle_model_default();
-    assert_true(validity_of(&never, NULL, 50.0, 0.0, 0.0, 0.0, 0) & CP_OUTSIDE_MODEL);
+    assert_int_equal(validity_of(&never, NULL, 50.0, 0.0, 0.0, 0.0, 0), CP_OUTSIDE_MODEL);
     unsigned crossing = validity_of(&car, &car, 50.0, 20.0, -2500.0, 90.0, 0);
     assert_true(crossing & CP_OUTSIDE_OPPONENT_STRUCTURE);
     assert_true(crossing & CP_OUTSIDE_OBLIQUE_VELOCITY);

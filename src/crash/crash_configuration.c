@@ -57,15 +57,14 @@ static bool find_touch(const cp_outline *a, const cp_vehicle_model *model_b,
                        const cp_barrier *barrier, double y_m, double angle_rad, double *x_m)
 {
     // Step towards a by the distance left; a translation by it cannot overshoot.
-    double x = 40.0, last_x = x;
+    double x = 40.0;
     for (int k = 0; k < 100000 && x > -40.0; k++) {
         cp_outline b = opponent_outline(model_b, barrier, x, y_m, angle_rad);
         double distance_m = cp_outline_distance(a, &b);
         if (distance_m <= 1e-10) {
-            *x_m = distance_m <= 0.0 ? x : last_x;
+            *x_m = x;
             return true;
         }
-        last_x = x;
         x -= fmax(distance_m, 1e-10);
     }
     return false;
@@ -95,13 +94,27 @@ static cp_contact_side struck_side(const cp_outline *outline, cp_vec2 point_m,
     return (cp_contact_side)best;
 }
 
+static cp_outline outline_of_b(const cp_vehicle_model *model_b,
+                               const cp_crash_configuration *configuration)
+{
+    return configuration->against_barrier
+               ? cp_barrier_outline(&configuration->barrier, configuration->barrier_pose)
+               : car_outline(model_b, &configuration->vehicle[1]);
+}
+
+double cp_crash_contact_gap(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
+                            const cp_crash_configuration *configuration)
+{
+    cp_outline a = car_outline(model_a, &configuration->vehicle[0]);
+    cp_outline b = outline_of_b(model_b, configuration);
+    return cp_outline_distance(&a, &b);
+}
+
 cp_vec2 cp_crash_contact_point(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
                                const cp_crash_configuration *configuration)
 {
     cp_outline a = car_outline(model_a, &configuration->vehicle[0]);
-    cp_outline b = configuration->against_barrier
-                       ? cp_barrier_outline(&configuration->barrier, configuration->barrier_pose)
-                       : car_outline(model_b, &configuration->vehicle[1]);
+    cp_outline b = outline_of_b(model_b, configuration);
     cp_manifold touch = cp_outline_contact(&a, &b, 1e-6);
     if (touch.count == 2)
         return cp_vec2_scale(cp_vec2_add(touch.point[0].position_m, touch.point[1].position_m),

@@ -61,6 +61,10 @@ CP_MUST_CHECK cp_status cp_crash_configuration_from_description(
     double speed_a_m_s, double speed_b_m_s, double lateral_offset_m, double angle_rad,
     cp_crash_configuration *configuration, cp_error *error);
 
+/* Distance of the two outlines of a configuration, negative when they overlap. */
+double cp_crash_contact_gap(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
+                            const cp_crash_configuration *configuration);
+
 /* Middle of the contact of the two outlines (rectangles of length and width; the barrier's rounded
  * one) of a configuration that touches, in its plane. */
 cp_vec2 cp_crash_contact_point(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,

@@ -34,6 +34,11 @@ static void description_and_configuration_are_inverse(void **state)
                                                     &error) != CP_OK)
             continue;
         met++;
+
+        // Wherever they are put together, the outlines touch.
+        const cp_vehicle_model *other = barrier ? NULL : &van;
+        assert_true(cp_crash_contact_gap(&car, other, &configuration) < 1e-9);
+        assert_true(cp_crash_contact_gap(&car, other, &configuration) > -1e-9);
         cp_vec2 contact_m = cp_crash_contact_point(&car, barrier ? NULL : &van, &configuration);
         cp_crash_description back =
             cp_crash_describe(&car, barrier ? NULL : &van, &configuration, contact_m);
@@ -44,6 +49,21 @@ static void description_and_configuration_are_inverse(void **state)
             assert_near(back.speed_m_s[1], speed_b, 1e-12);
     }
     assert_true(met > 400);
+}
+
+static void a_single_step_to_the_barrier_is_enough(void **state)
+{
+    (void)state;
+    // Face to face the first step already arrives: round angles and offsets must not be lost.
+    cp_vehicle_model car = cp_vehicle_model_default();
+    car.barrier = (cp_barrier){1.85, 1.197, 0.2672, 0.6, -1.0};
+    for (int angle_deg = -30; angle_deg <= 30; angle_deg += 5) {
+        for (int offset_mm = -700; offset_mm <= 700; offset_mm += 50) {
+            cp_crash_configuration configuration =
+                crash_builder_configuration(&car, NULL, 50.0, 0.0, offset_mm, angle_deg);
+            assert_near(cp_crash_contact_gap(&car, NULL, &configuration), 0.0, 1e-9);
+        }
+    }
 }
 
 static void head_on_cars_meet_with_their_fronts(void **state)
@@ -111,6 +131,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(description_and_configuration_are_inverse),
+        cmocka_unit_test(a_single_step_to_the_barrier_is_enough),
         cmocka_unit_test(head_on_cars_meet_with_their_fronts),
         cmocka_unit_test(a_crossing_car_is_struck_on_its_side),
         cmocka_unit_test(the_barrier_lies_where_the_sign_convention_says),

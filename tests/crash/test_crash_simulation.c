@@ -13,7 +13,8 @@
 #include <pthread.h>
 #include <string.h>
 
-static const cp_crash_options STANDARD = {0.0005, 0.2, 0.4, 0.01};
+static const cp_crash_options STANDARD = {
+    .time_step_s = 0.0005, .duration_s = 0.2, .longest_duration_s = 0.4, .coast_after_s = 0.01};
 
 // Seeded random crash number index: a barrier or another car, within the reference range.
 typedef struct random_crash {

@@ -40,7 +40,7 @@ CP_MUST_CHECK cp_status cp_optimiser_restore(const cp_optimiser_settings *settin
                                              cp_error *error);
 void cp_optimiser_destroy(cp_optimiser *optimiser); /* NULL is fine */
 
-/* One generation. */
+/* One generation ("cmaes": ten). */
 CP_MUST_CHECK cp_status cp_optimiser_evolve(cp_optimiser *optimiser, cp_error *error);
 size_t cp_optimiser_generation(const cp_optimiser *optimiser);
 /* Best value so far; point (dimension values, may be NULL) receives where. */

@@ -57,7 +57,7 @@ static void every_algorithm_finds_the_bottom(void **state)
     assert_true(best_after("de", 300, point) < 1e-4);
     assert_near(point[2], 0.3, 0.02);
     assert_true(best_after("sade", 300, point) < 1e-4);
-    assert_true(best_after("cmaes", 40, point) < 1e-4);
+    assert_true(best_after("cmaes", 10, point) < 1e-4);
 }
 
 static void the_same_seed_goes_the_same_way(void **state)

@@ -3,14 +3,18 @@
 #define CALIBRATE_CALIBRATION_H
 
 #include "calibrate/fit_file.h"
+#include "calibrate/pulse_objective.h"
 #include "calibrate/validation.h"
 
 /* Fitting a vehicle model to a reference: a global search (pagmo), then Nelder-Mead from its best.
- * The objective is the mean absolute OLC error over the reference's cases. */
+ * The objective is the fit file's: the mean absolute OLC error over the reference's cases, or the
+ * weighted mean total error over its pulses. */
 
 typedef struct cp_calibration {
-    cp_vehicle_model model; /* the fitted one */
-    double *olc_g;          /* owned: its OLC a case */
+    cp_vehicle_model model;      /* the fitted one */
+    double objective;            /* its value: g for olc, total error for pulse */
+    double *olc_g;               /* owned: its OLC a case, 0 where left-censored */
+    cp_pulse_error *pulse_error; /* owned: its error a pulse; NULL by objective olc */
     cp_validation validation;
     size_t fold_count;
     double *held_out_g; /* owned: a case's OLC by the model fitted without its fold; NULL: none */

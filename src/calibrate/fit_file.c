@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/fit_file.h"
 
+#include "calibrate/fit_pulses.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/yaml_file.h"
@@ -15,11 +16,23 @@ typedef struct yaml_unknown {
     char *max;
 } yaml_unknown;
 
+typedef struct yaml_range {
+    char *speed_min_km_h;
+    char *speed_max_km_h;
+    char *offset_max_mm;
+    char *angle_max_deg;
+    char *reason;
+} yaml_range;
+
 typedef struct yaml_fit {
     char *fit;
     char *description;
     char *base;
+    char *objective;
     char *reference;
+    cp_yaml_pulse *pulses;
+    unsigned pulses_count;
+    yaml_range *calibrated;
     char *output;
     char *algorithm;
     char *seed;
@@ -45,11 +58,21 @@ static const cyaml_schema_field_t UNKNOWN_FIELDS[] = {
 static const cyaml_schema_value_t UNKNOWN_VALUE = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, yaml_unknown, UNKNOWN_FIELDS)};
 
+static const cyaml_schema_field_t RANGE_FIELDS[] = {
+    TEXT(speed_min_km_h, yaml_range), TEXT(speed_max_km_h, yaml_range),
+    TEXT(offset_max_mm, yaml_range),  TEXT(angle_max_deg, yaml_range),
+    TEXT(reason, yaml_range),         CYAML_FIELD_END};
+
 static const cyaml_schema_field_t FIT_FIELDS[] = {
     TEXT(fit, yaml_fit),
     OPTIONAL_TEXT(description, yaml_fit),
     TEXT(base, yaml_fit),
-    TEXT(reference, yaml_fit),
+    OPTIONAL_TEXT(objective, yaml_fit),
+    OPTIONAL_TEXT(reference, yaml_fit),
+    CYAML_FIELD_SEQUENCE("pulses", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit, pulses,
+                         &CP_YAML_PULSE_VALUE, 1, CYAML_UNLIMITED),
+    CYAML_FIELD_MAPPING_PTR("calibrated", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit,
+                            calibrated, RANGE_FIELDS),
     TEXT(output, yaml_fit),
     OPTIONAL_TEXT(algorithm, yaml_fit),
     TEXT(seed, yaml_fit),
@@ -161,25 +184,81 @@ static cp_status read_texts(const cp_yaml_file *file, const yaml_fit *yaml, cp_f
     return CP_OK;
 }
 
+// What is made small, and that the file names what that needs and nothing it does not.
+static cp_status read_objective(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+                                cp_error *error)
+{
+    const char *objective = yaml->objective != NULL ? yaml->objective : "olc";
+    bool by_pulse = strcmp(objective, "pulse") == 0;
+    if (!by_pulse && strcmp(objective, "olc") != 0)
+        return cp_yaml_fail(file, error, "objective", "must be olc or pulse, found '%s'",
+                            objective);
+    if (by_pulse != (yaml->pulses_count > 0))
+        return cp_yaml_fail(file, error, "pulses", "%s",
+                            by_pulse ? "is missing: objective pulse needs the pulses to fit"
+                                     : "goes with objective pulse");
+    if (by_pulse == (yaml->reference != NULL))
+        return cp_yaml_fail(file, error, "reference", "%s",
+                            by_pulse ? "goes with objective olc"
+                                     : "is missing: objective olc needs the OLC values to fit");
+    fit->objective = by_pulse ? CP_FIT_PULSE : CP_FIT_OLC;
+    return CP_OK;
+}
+
+static cp_status read_range(const cp_yaml_file *file, const yaml_range *yaml, cp_fit *fit,
+                            cp_error *error)
+{
+    if (yaml == NULL)
+        return CP_OK;
+    cp_fit_range *range = &fit->range;
+    range->given = true;
+    cp_status status = cp_yaml_number(file, "calibrated.speed_min_km_h", yaml->speed_min_km_h, 1,
+                                      300, &range->speed_min_km_h, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "calibrated.speed_max_km_h", yaml->speed_max_km_h,
+                                range->speed_min_km_h, 300, &range->speed_max_km_h, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "calibrated.offset_max_mm", yaml->offset_max_mm, 0, 3000,
+                                &range->offset_max_mm, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "calibrated.angle_max_deg", yaml->angle_max_deg, 0, 90,
+                                &range->angle_max_deg, error);
+    if (status == CP_OK &&
+        (yaml->reason[0] == '\0' || strlen(yaml->reason) >= sizeof range->reason))
+        status = cp_yaml_fail(file, error, "calibrated.reason", "must have 1 to %zu characters",
+                              sizeof range->reason - 1);
+    snprintf(range->reason, sizeof range->reason, "%s", yaml->reason);
+    return status;
+}
+
+// The table of OLC values, as seen from the fit file's folder.
+static cp_status load_reference(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+                                cp_error *error)
+{
+    char *path = cp_file_beside(file->path, yaml->reference);
+    fit->reference_path = strdup(yaml->reference);
+    cp_status status = path != NULL && fit->reference_path != NULL
+                           ? cp_reference_load(path, &fit->reference, error)
+                           : cp_fail_memory(error, file->path);
+    free(path);
+    return status;
+}
+
 // The files a fit file names, as seen from its folder.
-static cp_status load_named_files(const char *path, const yaml_fit *yaml, cp_fit *fit,
+static cp_status load_named_files(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
                                   cp_error *error)
 {
-    char *base_path = cp_file_beside(path, yaml->base);
-    char *reference_path = cp_file_beside(path, yaml->reference);
-    fit->output_path = cp_file_beside(path, yaml->output);
-    fit->reference_path = strdup(yaml->reference);
-    cp_status status = CP_OK;
-    if (base_path == NULL || reference_path == NULL || fit->output_path == NULL ||
-        fit->reference_path == NULL)
-        status = cp_fail_memory(error, path);
-    if (status == CP_OK)
-        status = cp_vehicle_model_load(base_path, &fit->base, error);
-    if (status == CP_OK)
-        status = cp_reference_load(reference_path, &fit->reference, error);
+    char *base_path = cp_file_beside(file->path, yaml->base);
+    fit->output_path = cp_file_beside(file->path, yaml->output);
+    cp_status status = base_path != NULL && fit->output_path != NULL
+                           ? cp_vehicle_model_load(base_path, &fit->base, error)
+                           : cp_fail_memory(error, file->path);
     free(base_path);
-    free(reference_path);
-    return status;
+    if (status != CP_OK)
+        return status;
+    return fit->objective == CP_FIT_PULSE
+               ? cp_fit_pulses_load(file, yaml->pulses, yaml->pulses_count, fit, error)
+               : load_reference(file, yaml, fit, error);
 }
 
 cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error)
@@ -192,12 +271,16 @@ cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error)
     const yaml_fit *yaml = (const yaml_fit *)file.data;
     status = read_texts(&file, yaml, fit, error);
     if (status == CP_OK)
+        status = read_objective(&file, yaml, fit, error);
+    if (status == CP_OK)
+        status = read_range(&file, yaml->calibrated, fit, error);
+    if (status == CP_OK)
         status = read_numbers(&file, yaml, fit, error);
     for (size_t row = 0; status == CP_OK && row < yaml->unknowns_count; row++)
         status = read_unknown(&file, &yaml->unknowns[row], row, fit, error);
     fit->unknown_count = yaml->unknowns_count;
     if (status == CP_OK)
-        status = load_named_files(path, yaml, fit, error);
+        status = load_named_files(&file, yaml, fit, error);
     cp_yaml_close(&file);
     if (status == CP_OK)
         status = cp_hash_file(path, fit->hash, error);
@@ -209,6 +292,9 @@ cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error)
 void cp_fit_destroy(cp_fit *fit)
 {
     cp_reference_destroy(&fit->reference);
+    for (size_t k = 0; k < fit->pulse_count; k++)
+        cp_reference_pulse_destroy(&fit->pulses[k]);
+    free(fit->pulses);
     free(fit->reference_path);
     free(fit->output_path);
     *fit = (cp_fit){0};

@@ -3,24 +3,45 @@
 #define CALIBRATE_FIT_FILE_H
 
 #include "calibrate/candidate.h"
-#include "calibrate/reference.h"
+#include "calibrate/reference_pulse.h"
 
 #include <stdint.h>
 
 enum { CP_UNKNOWNS_MAX = 80 };
+
+/* What the fit makes small. */
+typedef enum cp_fit_objective {
+    CP_FIT_OLC,  /* mean absolute OLC error over the rows of a table; the default */
+    CP_FIT_PULSE /* weighted mean total error over pulses (pulse_objective.h) */
+} cp_fit_objective;
+
+/* Range the fitted model is said to be calibrated in, where it is not simply that of its
+ * references. */
+typedef struct cp_fit_range {
+    bool given;
+    double speed_min_km_h;
+    double speed_max_km_h;
+    double offset_max_mm;
+    double angle_max_deg;
+    char reason[512]; /* stated in the vehicle file */
+} cp_fit_range;
 
 /* What to fit and how, from a YAML file (db/vehicles/README.md describes it). Paths are as seen
  * from the fit file's folder. */
 typedef struct cp_fit {
     char name[64]; /* of the fitted vehicle */
     char description[256];
-    char hash[65];          /* SHA-256 of the fit file */
-    cp_vehicle_model base;  /* start values, and all that is not fitted */
-    cp_reference reference; /* owned */
-    char *reference_path;   /* owned, as written in the file */
-    char *output_path;      /* owned: fitted vehicle file; the report stands beside it as .fit.md,
-                               the state of an unfinished fit as .fit.state */
-    char algorithm[16];     /* "de", "sade" or "cmaes"; default "de" */
+    char hash[65];         /* SHA-256 of the fit file */
+    cp_vehicle_model base; /* start values, and all that is not fitted */
+    cp_fit_objective objective;
+    cp_reference reference; /* owned; by objective pulse: conditions and OLC of the pulses */
+    char *reference_path;   /* owned, as written in the file; NULL by objective pulse */
+    size_t pulse_count;
+    cp_reference_pulse *pulses; /* owned; none by objective olc */
+    cp_fit_range range;
+    char *output_path;  /* owned: fitted vehicle file; the report stands beside it as .fit.md,
+                           the state of an unfinished fit as .fit.state */
+    char algorithm[16]; /* "de", "sade" or "cmaes"; default "de" */
     uint32_t seed;
     size_t population;         /* default 40 */
     size_t generations;        /* default 150 */

@@ -9,6 +9,9 @@
 #include <string.h>
 #include <unistd.h>
 
+// So many pulses are listed in the head of the vehicle file.
+enum { MISFITS_MAX = 4 };
+
 // ---- the fitted vehicle ----------------------------------------------------------------------
 
 static const cp_unknown *unknown_of(const cp_fit *fit, const char *name)
@@ -29,14 +32,23 @@ static double highest_speed(const cp_fit *fit, double sign)
 
 static void write_range(FILE *file, const cp_fit *fit)
 {
-    double offset_mm = 0.0, angle_deg = 0.0;
-    for (size_t k = 0; k < fit->reference.count; k++) {
-        offset_mm = fmax(offset_mm, fabs(fit->reference.cases[k].offset_mm));
-        angle_deg = fmax(angle_deg, fabs(fit->reference.cases[k].angle_deg));
+    cp_fit_range range = fit->range;
+    if (range.given) {
+        fprintf(file, "# calibrated range: %s\n", range.reason);
+    } else {
+        range.speed_min_km_h = highest_speed(fit, -1.0);
+        range.speed_max_km_h = highest_speed(fit, 1.0);
+        for (size_t k = 0; k < fit->reference.count; k++) {
+            range.offset_max_mm =
+                fmax(range.offset_max_mm, fabs(fit->reference.cases[k].offset_mm));
+            range.angle_max_deg =
+                fmax(range.angle_max_deg, fabs(fit->reference.cases[k].angle_deg));
+        }
     }
-    fprintf(file, "calibrated:\n  speed_min_km_h: %g\n  speed_max_km_h: %g\n",
-            highest_speed(fit, -1.0), highest_speed(fit, 1.0));
-    fprintf(file, "  offset_max_mm: %g\n  angle_max_deg: %g\n", offset_mm, angle_deg);
+    fprintf(file, "calibrated:\n  speed_min_km_h: %g\n  speed_max_km_h: %g\n", range.speed_min_km_h,
+            range.speed_max_km_h);
+    fprintf(file, "  offset_max_mm: %g\n  angle_max_deg: %g\n", range.offset_max_mm,
+            range.angle_max_deg);
 }
 
 static void write_barrier(FILE *file, const cp_barrier *barrier)
@@ -45,6 +57,31 @@ static void write_barrier(FILE *file, const cp_barrier *barrier)
             barrier->width_m, barrier->depth_m, barrier->corner_radius_m);
     fprintf(file, "  pivot_m: %.9g\n  source: geometry of the reference study, see the fit\n",
             barrier->pivot_m);
+}
+
+// What the vehicle was fitted to and how far from it it is, as comment lines.
+static void write_misfit(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    if (fit->objective == CP_FIT_PULSE)
+        fprintf(file, "# weighted mean total error %.3f over %zu pulses\n", calibration->objective,
+                fit->pulse_count);
+    for (size_t k = 0; k < fit->pulse_count && k < MISFITS_MAX; k++) {
+        const cp_reference_pulse *pulse = &fit->pulses[k];
+        const cp_pulse_error *found = &calibration->pulse_error[k];
+        fprintf(file, "# %s: mean abs. error of v_x %.3f m/s over 0 to %.0f ms;\n", pulse->source,
+                found->vx_m_s, 1e3 * pulse->until_s);
+        fprintf(file,
+                "#   OLC %.2f g (reference %.2f), v = 0 at %.1f ms (%.1f), peak %.1f g (%.1f), "
+                "crush %.0f mm (%.0f)\n",
+                found->model.olc_g, pulse->marks.olc_g, 1e3 * found->model.t_v0_s,
+                1e3 * pulse->marks.t_v0_s, found->model.peak_g, pulse->marks.peak_g,
+                1e3 * found->model.crush_m, 1e3 * pulse->marks.crush_m);
+    }
+    if (fit->pulse_count > MISFITS_MAX)
+        fprintf(file, "# every pulse: see the report\n");
+    fprintf(file, "# mean absolute OLC error %.3f g, largest %.2f g, over %zu configurations\n",
+            calibration->validation.mean_abs_error_g, calibration->validation.max_abs_error_g,
+            fit->reference.count);
 }
 
 static void write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
@@ -56,9 +93,7 @@ static void write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *c
     fprintf(file,
             "# %s, seed %u, population %zu, generations %zu, then Nelder-Mead, %zu evaluations\n",
             fit->algorithm, fit->seed, fit->population, fit->generations, fit->local_evaluations);
-    fprintf(file, "# mean absolute OLC error %.3f g, largest %.2f g, over %zu configurations\n",
-            calibration->validation.mean_abs_error_g, calibration->validation.max_abs_error_g,
-            fit->reference.count);
+    write_misfit(file, fit, calibration);
     fprintf(file, "vehicle: %s\n", fit->name);
     if (fit->description[0] != '\0')
         fprintf(file, "description: \"%s\"\n", fit->description);
@@ -144,16 +179,69 @@ static void write_parameters(FILE *file, const cp_fit *fit, const cp_calibration
     }
 }
 
+// A value, or a dash where there is none.
+static void write_mark(FILE *file, double value, double unit_si, int digits)
+{
+    if (isnan(value))
+        fprintf(file, " - |");
+    else
+        fprintf(file, " %.*f |", digits, value / unit_si);
+}
+
+static void write_pulses(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    fprintf(file, "\n## Every pulse\n\nMean absolute errors from first contact to `until`, "
+                  "accelerations through CFC60; marks as reference / model.\n\n"
+                  "| pulse | km/h | offset mm | angle deg | until ms | total error | a_x g | a_y g "
+                  "| v_x m/s | v_y m/s | v = 0 ms | | peak g | | crush mm | |\n"
+                  "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|"
+                  "---:|\n");
+    for (size_t k = 0; k < fit->pulse_count; k++) {
+        const cp_reference_pulse *pulse = &fit->pulses[k];
+        const cp_pulse_error *found = &calibration->pulse_error[k];
+        fprintf(file, "| %s | %.4g | %g | %g | %.0f |", pulse->source, pulse->condition.speed_km_h,
+                pulse->condition.offset_mm, pulse->condition.angle_deg, 1e3 * pulse->until_s);
+        write_mark(file, found->total, 1.0, 3);
+        write_mark(file, found->ax_g, 1.0, 3);
+        write_mark(file, pulse->lateral ? found->ay_g : NAN, 1.0, 3);
+        write_mark(file, found->vx_m_s, 1.0, 3);
+        write_mark(file, pulse->lateral ? found->vy_m_s : NAN, 1.0, 3);
+        write_mark(file, pulse->marks.t_v0_s, 1e-3, 1);
+        write_mark(file, found->model.t_v0_s, 1e-3, 1);
+        write_mark(file, pulse->marks.peak_g, 1.0, 1);
+        write_mark(file, found->model.peak_g, 1.0, 1);
+        write_mark(file, pulse->marks.crush_m, 1e-3, 0);
+        write_mark(file, found->model.crush_m, 1e-3, 0);
+        fprintf(file, "\n");
+    }
+}
+
+static void write_objective(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    if (fit->objective == CP_FIT_OLC) {
+        fprintf(file, "Objective: mean absolute OLC error against `%s`. ", fit->reference_path);
+        return;
+    }
+    fprintf(file,
+            "Objective: weighted mean total error over %zu pulses, MAE a_x + MAE a_y + 10 MAE v_x "
+            "+ 10 MAE v_y + MAE of the time of v_x = 0 (g, m/s, s): **%.3f**. ",
+            fit->pulse_count, calibration->objective);
+}
+
 static void write_report(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
 {
     fprintf(file, "# Fit of %s\n\n", fit->name);
+    write_objective(file, fit, calibration);
     fprintf(file,
-            "Objective: mean absolute OLC error against `%s`. Global search `%s` (seed %u, "
+            "Global search `%s` (seed %u, "
             "population %zu, %zu generations, time step %g s), then Nelder-Mead (%zu evaluations, "
             "time step %g s).\n",
-            fit->reference_path, fit->algorithm, fit->seed, fit->population, fit->generations,
-            fit->global_time_step_s, fit->local_evaluations, fit->local_time_step_s);
-    write_summary(file, "Fitted to all configurations", &calibration->validation);
+            fit->algorithm, fit->seed, fit->population, fit->generations, fit->global_time_step_s,
+            fit->local_evaluations, fit->local_time_step_s);
+    if (fit->objective == CP_FIT_PULSE)
+        write_pulses(file, fit, calibration);
+    write_summary(file, fit->objective == CP_FIT_PULSE ? "OLC" : "Fitted to all configurations",
+                  &calibration->validation);
     if (calibration->held_out_g != NULL) {
         char title[80];
         snprintf(title, sizeof title, "%zu-fold cross-validation", calibration->fold_count);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/reference.h"
 
+#include "calibrate/csv_row.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/yaml_file.h"
@@ -15,34 +16,18 @@ static const char *const COLUMN_NAME[COLUMN_COUNT] = {"speed_kmh", "offset_mm", 
 static const double SMALLEST[COLUMN_COUNT] = {1.0, -3000.0, -90.0, 0.0};
 static const double LARGEST[COLUMN_COUNT] = {200.0, 3000.0, 90.0, 200.0};
 
-// Cut a line into at most room fields in place; returns how many there are.
-static size_t split_fields(char *line, char **fields, size_t room)
-{
-    size_t count = 0;
-    line[strcspn(line, "\r")] = '\0';
-    for (char *field = line; field != NULL && count < room; count++) {
-        fields[count] = field;
-        field = strchr(field, ',');
-        if (field != NULL)
-            *field++ = '\0';
-    }
-    return count;
-}
-
-#define FIELDS_MAX 32
-
 static cp_status find_columns(const char *path, char *header, size_t place[COLUMN_COUNT],
                               cp_error *error)
 {
-    char *fields[FIELDS_MAX];
-    size_t count = split_fields(header, fields, FIELDS_MAX);
+    char *fields[CP_CSV_FIELDS_MAX];
+    size_t count = cp_csv_split(header, fields, CP_CSV_FIELDS_MAX);
     for (int c = 0; c < COLUMN_COUNT; c++) {
-        place[c] = FIELDS_MAX;
+        place[c] = CP_CSV_FIELDS_MAX;
         for (size_t k = 0; k < count; k++)
             if (strcmp(fields[k], COLUMN_NAME[c]) == 0 ||
                 (c == COLUMN_OLC && strcmp(fields[k], "olc_g") == 0))
                 place[c] = k;
-        if (place[c] == FIELDS_MAX)
+        if (place[c] == CP_CSV_FIELDS_MAX)
             return cp_fail(error, CP_BAD_INPUT, "%s:1: column %s is missing", path, COLUMN_NAME[c]);
     }
     return CP_OK;
@@ -52,8 +37,8 @@ static cp_status read_case(const char *path, size_t line_number, char *line,
                            const size_t place[COLUMN_COUNT], cp_reference_case *row,
                            cp_error *error)
 {
-    char *fields[FIELDS_MAX];
-    size_t count = split_fields(line, fields, FIELDS_MAX);
+    char *fields[CP_CSV_FIELDS_MAX];
+    size_t count = cp_csv_split(line, fields, CP_CSV_FIELDS_MAX);
     double value[COLUMN_COUNT];
     for (int c = 0; c < COLUMN_COUNT; c++) {
         const char *text = place[c] < count ? fields[place[c]] : "";
@@ -77,10 +62,8 @@ static cp_status read_lines(const char *path, char *content, cp_reference *refer
     if (reference->cases == NULL)
         return cp_fail_memory(error, path);
     size_t place[COLUMN_COUNT] = {0}, number = 0;
-    for (char *line = content; line != NULL && *line != '\0';) {
-        char *next = strchr(line, '\n');
-        if (next != NULL)
-            *next++ = '\0';
+    for (char *rest = content; rest != NULL && *rest != '\0';) {
+        char *line = cp_csv_next_line(&rest);
         cp_status status = CP_OK;
         if (++number == 1)
             status = find_columns(path, line, place, error);
@@ -89,7 +72,6 @@ static cp_status read_lines(const char *path, char *content, cp_reference *refer
                 read_case(path, number, line, place, &reference->cases[reference->count++], error);
         if (status != CP_OK)
             return status;
-        line = next;
     }
     if (reference->count == 0)
         return cp_fail(error, CP_BAD_INPUT, "%s: no configuration in the file", path);

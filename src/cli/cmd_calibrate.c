@@ -28,10 +28,10 @@ static const struct argp ARGP = {
     .parser = parse,
     .args_doc = "FIT.yaml",
     .doc =
-        "Fit a vehicle model to reference OLC values: a global search, then Nelder-Mead. Writes "
-        "the fitted vehicle file and a report beside it (.fit.md)."
+        "Fit a vehicle model to reference OLC values or pulses: a global search, then "
+        "Nelder-Mead. Writes the fitted vehicle file and a report beside it (.fit.md)."
         "\v"
-        "The fit file names base vehicle, reference, unknowns with bounds, algorithm, seed and "
+        "The fit file names base vehicle, references, unknowns with bounds, algorithm, seed and "
         "budget (db/vehicles/README.md). A killed fit goes on where it was when called again.\n\n"
         "Example:\n"
         "  crashpulse calibrate db/vehicles/honda_accord_2014.fit.yaml\n",
@@ -55,6 +55,9 @@ cp_status cmd_calibrate(int argc, char **argv, cp_error *error)
     if (status == CP_OK)
         status = cp_calibration_write(&fit, &calibration, error);
     if (status == CP_OK) {
+        if (fit.objective == CP_FIT_PULSE)
+            printf("%s: total error %.3f over %zu pulses\n", fit.output_path, calibration.objective,
+                   fit.pulse_count);
         printf("%s: mean absolute OLC error %.3f g, largest %.2f g\n", fit.output_path,
                calibration.validation.mean_abs_error_g, calibration.validation.max_abs_error_g);
         if (calibration.held_out_g != NULL)

@@ -2,8 +2,11 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "cli/crash_output.h"
+#include "cli/crash_samples.h"
 #include "core/units.h"
+#include "report/animation.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -17,10 +20,28 @@ typedef struct arguments {
     double duration_ms;
     const char *pulse_path;
     bool raw;
+    const char *animation_path;
+    const char *overlay_vehicle_path;  /* NULL: the same vehicle */
+    const char *overlay_opponent_path; /* NULL: the same opponent; "barrier" */
+    long samples;                      /* 0: none */
+    long seed;                         /* -1: not given */
     cp_format format;
 } arguments;
 
-enum { AGAINST = 256, OPPONENT_SPEED, OFFSET, ANGLE, DURATION, PULSE, RAW };
+enum {
+    AGAINST = 256,
+    OPPONENT_SPEED,
+    OFFSET,
+    ANGLE,
+    DURATION,
+    PULSE,
+    RAW,
+    ANIMATE,
+    OVERLAY_VEHICLE,
+    OVERLAY_AGAINST,
+    SAMPLES,
+    SEED
+};
 
 static const struct argp_option OPTIONS[] = {
     {"against", AGAINST, "OPPONENT", 0,
@@ -37,6 +58,17 @@ static const struct argp_option OPTIONS[] = {
     {"pulse", PULSE, "FILE.csv", 0, "write the pulses: acceleration, velocity, displacement, yaw",
      0},
     {"raw", RAW, NULL, 0, "pulses with accelerations as simulated, without the CFC60 filter", 0},
+    {"animate", ANIMATE, "FILE.html", 0,
+     "write a page that shows the crash from above over time beside its pulses", 0},
+    {"overlay-against", OVERLAY_AGAINST, "OPPONENT", 0,
+     "lay a second run over the animation: the same, but against 'barrier' or a vehicle file", 0},
+    {"overlay-vehicle", OVERLAY_VEHICLE, "VEHICLE3.yaml", 0,
+     "lay a second run over the animation: the same, but with this vehicle", 0},
+    {"samples", SAMPLES, "N", 0,
+     "crash N times with parameters drawn from the scatter in the vehicle files; print medians and "
+     "5 to 95 % intervals",
+     0},
+    {"seed", SEED, "S", 0, "seed of the samples (default 1)", 0},
     {0},
 };
 
@@ -46,10 +78,47 @@ static void check(const arguments *a, struct argp_state *state)
         argp_error(state, "which vehicle? VEHICLE.yaml is missing");
     if (isnan(a->speed_km_h))
         argp_error(state, "how fast? --speed KMH is missing");
-    if (!a->opponent_path && !isnan(a->opponent_speed_km_h))
+    bool overlay = a->overlay_vehicle_path || a->overlay_opponent_path;
+    bool overlay_car = a->overlay_opponent_path && strcmp(a->overlay_opponent_path, "barrier") != 0;
+    if (!a->opponent_path && !overlay_car && !isnan(a->opponent_speed_km_h))
         argp_error(state, "--opponent-speed needs an opponent: --against VEHICLE2.yaml");
+    if (overlay && !a->animation_path)
+        argp_error(state, "an overlay is drawn in the animation: --animate FILE.html is missing");
+    if (a->seed >= 0 && a->samples == 0)
+        argp_error(state, "--seed is about samples: --samples N is missing");
     if (a->raw && !a->pulse_path)
         argp_error(state, "--raw is about the pulse file: --pulse FILE.csv is missing");
+}
+
+// Options about what to make of the crash.
+static error_t parse_output(int key, char *argument, struct argp_state *state)
+{
+    arguments *a = state->input;
+    switch (key) {
+    case PULSE:
+        a->pulse_path = argument;
+        return 0;
+    case RAW:
+        a->raw = true;
+        return 0;
+    case ANIMATE:
+        a->animation_path = argument;
+        return 0;
+    case OVERLAY_VEHICLE:
+        a->overlay_vehicle_path = argument;
+        return 0;
+    case OVERLAY_AGAINST:
+        a->overlay_opponent_path = argument;
+        return 0;
+    case SAMPLES:
+        a->samples = cp_args_integer(state, "--samples", argument, 2, 1000000);
+        return 0;
+    case SEED:
+        a->seed = cp_args_integer(state, "--seed", argument, 0, LONG_MAX);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)
@@ -78,12 +147,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case DURATION:
         a->duration_ms = cp_args_number(state, "--duration", argument, 10.0, 1000.0, "ms");
         return 0;
-    case PULSE:
-        a->pulse_path = argument;
-        return 0;
-    case RAW:
-        a->raw = true;
-        return 0;
     case ARGP_KEY_ARG:
         if (a->vehicle_path)
             argp_error(state, "one vehicle, and its opponent by --against; found '%s' too",
@@ -94,7 +157,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         check(a, state);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_output(key, argument, state);
     }
 }
 
@@ -114,54 +177,123 @@ static const struct argp ARGP = {
         "Examples:\n"
         "  crashpulse crash car.yaml --speed 56\n"
         "  crashpulse crash car.yaml --speed 40 --offset 400 --angle 15 --format json\n"
-        "  crashpulse crash car.yaml --against other.yaml --speed 50 --pulse pulse.csv\n",
+        "  crashpulse crash car.yaml --against other.yaml --speed 50 --pulse pulse.csv\n"
+        "  crashpulse crash a.yaml --speed 56 --animate a.html --overlay-against b.yaml\n"
+        "  crashpulse crash car.yaml --speed 50 --samples 1000 --seed 7\n",
     .children = CHILDREN,
 };
 
-static cp_status simulate(const arguments *a, cp_crash_run *run, cp_error *error)
+// A vehicle file, or the barrier.
+static cp_status load(const char *path, cp_vehicle_model *model, const cp_vehicle_model **loaded,
+                      cp_error *error)
 {
-    double speed = cp_m_s_from_km_h(a->speed_km_h);
-    double opponent_speed =
-        isnan(a->opponent_speed_km_h) ? speed : cp_m_s_from_km_h(a->opponent_speed_km_h);
-    cp_status status = cp_crash_configuration_from_description(
-        run->model[0], run->model[1], NULL, speed, run->model[1] ? opponent_speed : 0.0,
-        a->offset_mm / 1e3, cp_rad_from_deg(a->angle_deg), &run->configuration, error);
-    if (status != CP_OK)
-        return status;
-    cp_vec2 contact = cp_crash_contact_point(run->model[0], run->model[1], &run->configuration);
-    run->description =
-        cp_crash_describe(run->model[0], run->model[1], &run->configuration, contact);
+    *loaded = NULL;
+    if (!path || strcmp(path, "barrier") == 0)
+        return CP_OK;
+    cp_status status = cp_vehicle_model_load(path, model, error);
+    if (status == CP_OK)
+        *loaded = model;
+    return status;
+}
 
-    cp_crash_options options = cp_crash_options_default();
-    options.duration_s = run->duration_s = a->duration_ms / 1e3;
-    options.longest_duration_s = fmax(options.longest_duration_s, options.duration_s);
-    status = cp_crash_library_begin(error);
+static cp_crash_request request_of(const arguments *a)
+{
+    double own_km_h = a->speed_km_h;
+    double opponent_km_h = isnan(a->opponent_speed_km_h) ? own_km_h : a->opponent_speed_km_h;
+    return (cp_crash_request){.speed_m_s = cp_m_s_from_km_h(own_km_h),
+                              .opponent_speed_m_s = cp_m_s_from_km_h(opponent_km_h),
+                              .offset_m = a->offset_mm / 1e3,
+                              .angle_rad = cp_rad_from_deg(a->angle_deg),
+                              .duration_s = a->duration_ms / 1e3};
+}
+
+// One run of the animation, filmed.
+typedef struct filmed_run {
+    cp_vehicle_model model[2];
+    cp_crash_run run;
+    cp_crash_film film;
+} filmed_run;
+
+static cp_status film(const arguments *a, const char *vehicle_path, const char *opponent_path,
+                      filmed_run *filmed, cp_error *error)
+{
+    cp_crash_request request = request_of(a);
+    filmed->film = cp_crash_film_default();
+    cp_status status = load(vehicle_path, &filmed->model[0], &filmed->run.model[0], error);
+    if (status == CP_OK)
+        status = load(opponent_path, &filmed->model[1], &filmed->run.model[1], error);
+    if (status == CP_OK)
+        status = cp_crash_run_simulate(&request, &filmed->run,
+                                       a->animation_path ? &filmed->film : NULL, error);
+    return status;
+}
+
+static cp_status animate(const filmed_run *first, const filmed_run *overlay, const char *path,
+                         cp_error *error)
+{
+    const filmed_run *const filmed[2] = {first, overlay};
+    cp_animated_run animated[2];
+    for (int k = 0; k < (overlay ? 2 : 1); k++)
+        animated[k] = (cp_animated_run){
+            .model = {filmed[k]->run.model[0], filmed[k]->run.model[1]},
+            .configuration = &filmed[k]->run.configuration,
+            .description = &filmed[k]->run.description,
+            .result = &filmed[k]->run.result,
+            .film = &filmed[k]->film,
+        };
+    return cp_animation_write(animated, overlay ? 2 : 1, path, error);
+}
+
+static cp_status write_animation(const arguments *a, const filmed_run *first, cp_error *error)
+{
+    if (!a->overlay_vehicle_path && !a->overlay_opponent_path)
+        return animate(first, NULL, a->animation_path, error);
+    filmed_run overlay = {0};
+    cp_status status = film(a, a->overlay_vehicle_path ? a->overlay_vehicle_path : a->vehicle_path,
+                            a->overlay_opponent_path ? a->overlay_opponent_path : a->opponent_path,
+                            &overlay, error);
     if (status != CP_OK)
-        return status;
-    status = cp_crash_simulate(run->model[0], run->model[1], &run->configuration, &options,
-                               &run->result, error);
-    cp_crash_library_end();
-    if (status == CP_OK && !run->result.touched)
-        return cp_fail(error, CP_BAD_INPUT, "the outlines of the two never met");
+        status = cp_error_prefix(error, "overlay: ");
+    else
+        status = animate(first, &overlay, a->animation_path, error);
+    cp_crash_film_destroy(&overlay.film);
+    cp_crash_result_destroy(&overlay.run.result);
+    return status;
+}
+
+static cp_status print_samples(const arguments *a, const cp_crash_run *nominal, cp_error *error)
+{
+    const char *const paths[2] = {a->vehicle_path, a->opponent_path};
+    cp_crash_request request = request_of(a);
+    cp_crash_samples samples = {0};
+    cp_status status = cp_crash_samples_run(&request, nominal, paths, (size_t)a->samples,
+                                            a->seed < 0 ? 1 : (uint64_t)a->seed, &samples, error);
+    if (status == CP_OK)
+        status = cp_crash_samples_print(&samples, nominal, a->format, stdout, error);
+    cp_crash_samples_destroy(&samples);
     return status;
 }
 
 cp_status cmd_crash(int argc, char **argv, cp_error *error)
 {
-    arguments a = {.speed_km_h = NAN, .opponent_speed_km_h = NAN, .duration_ms = 200.0};
+    arguments a = {.speed_km_h = NAN, .opponent_speed_km_h = NAN, .duration_ms = 200.0, .seed = -1};
     cp_args_parse(&ARGP, argc, argv, &a);
 
-    cp_vehicle_model model[2];
-    cp_crash_run run = {.model = {&model[0], a.opponent_path ? &model[1] : NULL}};
-    cp_status status = cp_vehicle_model_load(a.vehicle_path, &model[0], error);
-    if (status == CP_OK && a.opponent_path)
-        status = cp_vehicle_model_load(a.opponent_path, &model[1], error);
-    if (status == CP_OK)
-        status = simulate(&a, &run, error);
+    cp_status status = cp_crash_library_begin(error);
+    if (status != CP_OK)
+        return status;
+    filmed_run filmed = {0};
+    status = film(&a, a.vehicle_path, a.opponent_path, &filmed, error);
     if (status == CP_OK && a.pulse_path)
-        status = cp_crash_write_pulse(&run, a.raw, a.pulse_path, error);
-    if (status == CP_OK)
-        status = cp_crash_print(&run, a.format, stdout, error);
-    cp_crash_result_destroy(&run.result);
+        status = cp_crash_write_pulse(&filmed.run, a.raw, a.pulse_path, error);
+    if (status == CP_OK && a.animation_path)
+        status = write_animation(&a, &filmed, error);
+    if (status == CP_OK && a.samples > 0)
+        status = print_samples(&a, &filmed.run, error);
+    else if (status == CP_OK)
+        status = cp_crash_print(&filmed.run, a.format, stdout, error);
+    cp_crash_film_destroy(&filmed.film);
+    cp_crash_result_destroy(&filmed.run.result);
+    cp_crash_library_end();
     return status;
 }

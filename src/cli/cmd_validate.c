@@ -3,24 +3,71 @@
 #include "calibrate/validation.h"
 #include "cli/args.h"
 #include "cli/commands.h"
+#include "cli/pulse_validation.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 typedef struct arguments {
     const char *vehicle_path;
-    const char *reference_path;
+    const char *reference_path; /* either this ... */
+    cp_pulse_source pulse;      /* ... or its path */
+    const char *curves_path;
     long threads;
     cp_format format;
 } arguments;
 
+enum { PULSE = 256, CHANNELS, OFFSET, ANGLE, UNTIL, CURVES };
+
 static const struct argp_option OPTIONS[] = {
     {"reference", 'r', "FILE.csv", 0,
      "OLC values to hold the model against: columns speed_kmh, offset_mm, angle_deg, olc_fe_g", 0},
+    {"pulse", PULSE, "PATH", 0,
+     "pulse to hold the model against instead: the folder of a test in NHTSA's EV5 form, or a "
+     "file as 'crashpulse crash --pulse' writes it",
+     0},
+    {"channels", CHANNELS, "N,N...", 0,
+     "longitudinal accelerometers of the test; the pulse is their mean", 0},
+    {"offset", OFFSET, "MM", 0, "offset of the barrier in the pulse's test (default 0)", 0},
+    {"angle", ANGLE, "DEG", 0, "angle of the barrier in the pulse's test (default 0)", 0},
+    {"until", UNTIL, "MS", 0, "compare pulses from first contact to here (default 120)", 0},
+    {"curves", CURVES, "FILE.csv", 0, "write both pulses side by side", 0},
     {"threads", 'j', "N", 0, "simulate on N threads (default: as many as cores)", 0},
     {0},
 };
+
+// Numbers between commas.
+static void read_channels(const char *text, cp_pulse_source *pulse, struct argp_state *state)
+{
+    char copy[256];
+    if (strlen(text) >= sizeof copy)
+        argp_error(state, "--channels is too long");
+    strcpy(copy, text);
+    for (char *rest = copy; rest != NULL;) {
+        char *number = rest;
+        rest = strchr(rest, ',');
+        if (rest != NULL)
+            *rest++ = '\0';
+        if (pulse->sensor_count == CP_PULSE_SENSORS_MAX)
+            argp_error(state, "--channels takes at most %d numbers", CP_PULSE_SENSORS_MAX);
+        pulse->sensor[pulse->sensor_count++] =
+            (int)cp_args_integer(state, "--channels", number, 1, 99999);
+    }
+}
+
+static void check(const arguments *a, struct argp_state *state)
+{
+    if (a->vehicle_path == NULL)
+        argp_error(state, "which vehicle? VEHICLE.yaml is missing");
+    if (a->reference_path == NULL && a->pulse.path == NULL)
+        argp_error(state, "against what? --reference FILE.csv or --pulse PATH is missing");
+    if (a->reference_path != NULL && a->pulse.path != NULL)
+        argp_error(state, "either --reference or --pulse, not both");
+    if (a->pulse.path == NULL && (a->pulse.sensor_count > 0 || a->curves_path != NULL))
+        argp_error(state, "--channels and --curves go with --pulse");
+}
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
@@ -32,6 +79,24 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case 'r':
         a->reference_path = argument;
         return 0;
+    case PULSE:
+        a->pulse.path = argument;
+        return 0;
+    case CHANNELS:
+        read_channels(argument, &a->pulse, state);
+        return 0;
+    case OFFSET:
+        a->pulse.offset_mm = cp_args_number(state, "--offset", argument, -3000.0, 3000.0, "mm");
+        return 0;
+    case ANGLE:
+        a->pulse.angle_deg = cp_args_number(state, "--angle", argument, -90.0, 90.0, "degrees");
+        return 0;
+    case UNTIL:
+        a->pulse.until_s = 1e-3 * cp_args_number(state, "--until", argument, 10.0, 1000.0, "ms");
+        return 0;
+    case CURVES:
+        a->curves_path = argument;
+        return 0;
     case 'j':
         a->threads = cp_args_integer(state, "--threads", argument, 1, 64);
         return 0;
@@ -41,10 +106,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         a->vehicle_path = argument;
         return 0;
     case ARGP_KEY_END:
-        if (a->vehicle_path == NULL)
-            argp_error(state, "which vehicle? VEHICLE.yaml is missing");
-        if (a->reference_path == NULL)
-            argp_error(state, "--reference FILE.csv is missing");
+        check(a, state);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -58,11 +120,14 @@ static const struct argp ARGP = {
     .parser = parse,
     .args_doc = "VEHICLE.yaml",
     .doc = "Hold a vehicle model against reference OLC values: every configuration is simulated "
-           "against the barrier of the vehicle file; errors are model minus reference, in g."
+           "against the barrier of the vehicle file; errors are model minus reference, in g. Or "
+           "against the pulse of one test at its speed."
            "\v"
-           "Example:\n"
+           "Examples:\n"
            "  crashpulse validate db/vehicles/honda_accord_2014.yaml \\\n"
-           "    --reference db/reference/olc_accord_2014.csv --format json\n",
+           "    --reference db/reference/olc_accord_2014.csv --format json\n"
+           "  crashpulse validate db/vehicles/toyota_camry_2018.yaml \\\n"
+           "    --pulse nhtsa_v10146 --channels 93,94\n",
     .children = CHILDREN,
 };
 
@@ -154,18 +219,11 @@ static cp_status print(const cp_vehicle_model *model, const cp_reference *refere
     return status;
 }
 
-cp_status cmd_validate(int argc, char **argv, cp_error *error)
+static cp_status validate_olc(const arguments *a, const cp_vehicle_model *model, cp_error *error)
 {
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    arguments a = {.threads = cores > 0 && cores < 64 ? cores : 1};
-    cp_args_parse(&ARGP, argc, argv, &a);
-
-    cp_vehicle_model model;
     cp_reference reference = {0};
     double *olc_g = NULL;
-    cp_status status = cp_vehicle_model_load(a.vehicle_path, &model, error);
-    if (status == CP_OK)
-        status = cp_reference_load(a.reference_path, &reference, error);
+    cp_status status = cp_reference_load(a->reference_path, &reference, error);
     if (status == CP_OK) {
         olc_g = calloc(reference.count, sizeof *olc_g);
         status =
@@ -173,13 +231,29 @@ cp_status cmd_validate(int argc, char **argv, cp_error *error)
     }
     if (status == CP_OK) {
         status =
-            cp_objective_olc(&model, reference.cases, reference.count,
-                             cp_crash_options_default().time_step_s, (int)a.threads, olc_g, error);
+            cp_objective_olc(model, reference.cases, reference.count,
+                             cp_crash_options_default().time_step_s, (int)a->threads, olc_g, error);
         cp_crash_library_end();
     }
     if (status == CP_OK)
-        status = print(&model, &reference, olc_g, a.format, error);
+        status = print(model, &reference, olc_g, a->format, error);
     free(olc_g);
     cp_reference_destroy(&reference);
     return status;
+}
+
+cp_status cmd_validate(int argc, char **argv, cp_error *error)
+{
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    arguments a = {.threads = cores > 0 && cores < 64 ? cores : 1,
+                   .pulse = {.speed_km_h = NAN, .until_s = 0.12, .weight_1 = 1.0}};
+    cp_args_parse(&ARGP, argc, argv, &a);
+
+    cp_vehicle_model model;
+    cp_status status = cp_vehicle_model_load(a.vehicle_path, &model, error);
+    if (status != CP_OK)
+        return status;
+    return a.pulse.path != NULL
+               ? cp_pulse_validate(&model, &a.pulse, a.curves_path, a.format, error)
+               : validate_olc(&a, &model, error);
 }

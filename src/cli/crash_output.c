@@ -81,7 +81,7 @@ static json_t *vehicle_json(const cp_crash_run *run, int role)
     return vehicle;
 }
 
-static json_t *configuration_json(const cp_crash_run *run)
+json_t *cp_crash_configuration_json(const cp_crash_run *run)
 {
     const cp_crash_description *d = &run->description;
     bool barrier = run->configuration.against_barrier;
@@ -103,8 +103,8 @@ static json_t *run_json(const cp_crash_run *run)
     json_t *vehicles = json_array();
     for (int role = 0; role < run->result.vehicle_count; role++)
         json_array_append_new(vehicles, vehicle_json(run, role));
-    return json_pack("{s:o, s:o, s:o, s:o}", "configuration", configuration_json(run), "vehicles",
-                     vehicles, "t_common_ms", real_json(run->result.t_common_s * 1e3),
+    return json_pack("{s:o, s:o, s:o, s:o}", "configuration", cp_crash_configuration_json(run),
+                     "vehicles", vehicles, "t_common_ms", real_json(run->result.t_common_s * 1e3),
                      "separation_ms", real_json(run->result.separation_s * 1e3));
 }
 
@@ -134,7 +134,7 @@ static cp_status print_csv(const cp_crash_run *run, FILE *file, cp_error *error)
     return status;
 }
 
-static void print_configuration(const cp_crash_run *run, FILE *file)
+void cp_crash_print_configuration(const cp_crash_run *run, FILE *file)
 {
     const cp_crash_description *d = &run->description;
     fprintf(file, "%s at %.4g km/h against ", run->model[0]->name,
@@ -158,7 +158,7 @@ static cp_status print_table(const cp_crash_run *run, FILE *file, cp_error *erro
     int count = run->result.vehicle_count;
     number numbers[2][NUMBER_COUNT];
     cp_table table;
-    print_configuration(run, file);
+    cp_crash_print_configuration(run, file);
     cp_table_begin(&table, COLUMN, 1 + (size_t)count);
     table.right_from = 1;
     cp_table_text(&table, "model");

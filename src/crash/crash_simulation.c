@@ -3,6 +3,7 @@
 
 #include "crash/barrier.h"
 #include "crash/encounter.h"
+#include "crash/film_camera.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -75,6 +76,7 @@ typedef struct crash_run {
     cp_vec2 first_relative_m_s; /* of a against b at first contact */
     double last_approach_m_s;
     size_t sample;
+    cp_film_camera camera;
     cp_crash_result *result;
 } crash_run;
 
@@ -247,10 +249,46 @@ static void record_step(crash_run *run, double dt)
     }
 }
 
+static void film_now(crash_run *run, double dt)
+{
+    cp_pose ground[2] = {{{0.0, 0.0}, 0.0}, {{0.0, 0.0}, 0.0}};
+    for (int c = 0; c < run->car_count; c++)
+        ground[c] = (cp_pose){run->last[c].cog_m, run->last[c].yaw_rad};
+    cp_film_camera_take(&run->camera, run->sample, dt, run->car, ground, run->car_count);
+}
+
+// Start the film, if there is one, with its first frame.
+static cp_status begin_film(crash_run *run, size_t last_sample, cp_error *error)
+{
+    double dt = run->options->time_step_s;
+    const cp_outline *barrier = run->car_count == 1 ? &run->encounter.barrier : NULL;
+    cp_status status = cp_film_camera_begin(&run->camera, run->options->film, last_sample, dt,
+                                            run->start[0], barrier, error);
+    if (status == CP_OK)
+        film_now(run, dt);
+    return status;
+}
+
+static void film_coasting(const crash_run *run, size_t last, double dt)
+{
+    for (size_t k = run->sample + 1; run->camera.film != NULL && k <= last; k++) {
+        double t_s = dt * (double)(k - run->sample);
+        cp_pose ground[2] = {{{0.0, 0.0}, 0.0}, {{0.0, 0.0}, 0.0}};
+        for (int c = 0; c < run->car_count; c++) {
+            const cp_body_state *state = &run->last[c];
+            cp_vec2 moved = cp_vec2_scale(state->velocity_m_s, t_s);
+            ground[c] = (cp_pose){cp_vec2_add(state->cog_m, moved),
+                                  state->yaw_rad + t_s * state->yaw_rate_rad_s};
+        }
+        cp_film_camera_take_coasting(&run->camera, k, dt, ground, run->car_count);
+    }
+}
+
 // Free of contact for good: constant world velocity and yaw rate to the end of the record.
 static void coast(crash_run *run, size_t last, double dt)
 {
     size_t from = run->sample;
+    film_coasting(run, last, dt);
     for (int c = 0; c < run->car_count; c++) {
         cp_pulse *pulse = &run->result->pulse[c];
         cp_body_state state = run->last[c];
@@ -262,6 +300,7 @@ static void coast(crash_run *run, size_t last, double dt)
             pulse->channel[CP_CHANNEL_VX][k] = pulse->channel[CP_CHANNEL_VX][k - 1];
             pulse->channel[CP_CHANNEL_VY][k] = pulse->channel[CP_CHANNEL_VY][k - 1];
         }
+        run->last[c] = state;
     }
     run->sample = last;
 }
@@ -367,6 +406,7 @@ static bool advance(crash_run *run, double dt)
     for (int c = 0; c < run->car_count; c++)
         cp_car_after_step(&run->car[c], dt);
     record_step(run, dt);
+    film_now(run, dt);
     return pressed;
 }
 
@@ -483,8 +523,10 @@ cp_status cp_crash_simulate(const cp_vehicle_model *model_a, const cp_vehicle_mo
         status = set_up(run, models, configuration, error);
     if (status == CP_OK) {
         begin_record(run);
-        status = simulate_contact(run, error);
+        status = begin_film(run, samples - 1, error);
     }
+    if (status == CP_OK)
+        status = simulate_contact(run, error);
     if (status == CP_OK)
         status = evaluate(run, error);
     destroy_world(run);

@@ -3,6 +3,7 @@
 #define CRASH_CRASH_SIMULATION_H
 
 #include "crash/crash_configuration.h"
+#include "crash/crash_film.h"
 #include "pulse/severity.h"
 
 /* One crash on the multibody surrogate. */
@@ -12,6 +13,7 @@ typedef struct cp_crash_options {
     double duration_s;         /* at least this long, default 0.2 */
     double longest_duration_s; /* at most, default 0.4 */
     double coast_after_s;      /* free of contact this long: coast analytically, default 0.01 */
+    cp_crash_film *film;       /* filled with what happens; default NULL: nobody films. Borrowed */
 } cp_crash_options;
 
 cp_crash_options cp_crash_options_default(void);

@@ -108,11 +108,24 @@ static void push(const cp_encounter_pair *pair, cp_vec2 force_n, cp_vec2 at)
         dBodyAddForceAtPos(pair->body[1], force_n.x, force_n.y, 0.0, at.x, at.y, 0.0);
 }
 
+// A pair that touches at two points pushes with both. Near each other they are one patch, no
+// stiffer than a single corner: its stiffness grows with the distance of the points up to this.
+static const double CONTACT_PATCH_M = 0.12;
+
+static double point_weight(const cp_manifold *manifold)
+{
+    if (manifold->count < 2)
+        return 1.0;
+    double apart_m =
+        cp_vec2_length(cp_vec2_sub(manifold->point[1].position_m, manifold->point[0].position_m));
+    return 0.5 + 0.5 * fmin(1.0, apart_m / CONTACT_PATCH_M);
+}
+
 // Spring and damper of every point; returns the whole pressure, and where its middle is.
 static double press(cp_encounter *encounter, cp_encounter_pair *pair, double time_step_s)
 {
     const cp_manifold *manifold = &pair->manifold;
-    double total_n = 0.0;
+    double total_n = 0.0, weight = point_weight(manifold);
     cp_vec2 moment = {0.0, 0.0};
     for (int k = 0; k < manifold->count; k++) {
         cp_vec2 at = manifold->point[k].position_m;
@@ -122,8 +135,8 @@ static double press(cp_encounter *encounter, cp_encounter_pair *pair, double tim
             fmin(pair->damping_n_s_m, damping_limit(pair, at, manifold->normal, time_step_s));
         double force_n = depth_m * pair->stiffness_n_m +
                          damping_n_s_m * cp_vec2_dot(pair->relative_m_s[k], manifold->normal);
-        pair->press_n[k] = depth_m > 0.0 ? fmax(0.0, force_n) : 0.0;
-        encounter->elastic_normal_j += 0.5 * pair->stiffness_n_m * depth_m * depth_m;
+        pair->press_n[k] = depth_m > 0.0 ? weight * fmax(0.0, force_n) : 0.0;
+        encounter->elastic_normal_j += weight * 0.5 * pair->stiffness_n_m * depth_m * depth_m;
         push(pair, cp_vec2_scale(manifold->normal, pair->press_n[k]), at);
         total_n += pair->press_n[k];
         moment = cp_vec2_add(moment, cp_vec2_scale(at, pair->press_n[k]));

@@ -21,8 +21,11 @@ const size_t CP_VEHICLE_PARAMETER_COUNT =
 cp_vehicle_model cp_vehicle_model_default(void)
 {
     cp_vehicle_model model = {.name = "default", .barrier = cp_barrier_default()};
-    for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++)
+    for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++) {
         cp_vehicle_model_set(&model, k, CP_VEHICLE_PARAMETER[k].standard);
+        model.smallest[k] = CP_VEHICLE_PARAMETER[k].smallest;
+        model.largest[k] = CP_VEHICLE_PARAMETER[k].largest;
+    }
     return model;
 }
 
@@ -201,6 +204,8 @@ static cp_status read_parameter(const cp_yaml_file *file, const yaml_parameter *
     if (status != CP_OK)
         return cp_error_prefix(error, "parameter '%s': ", entry->name);
     cp_vehicle_model_set(model, index, value);
+    model->smallest[index] = smallest;
+    model->largest[index] = largest;
     return CP_OK;
 }
 

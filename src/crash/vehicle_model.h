@@ -93,6 +93,9 @@ typedef struct cp_vehicle_model {
     cp_barrier barrier; /* of the study it was calibrated against */
     /* Relative standard deviation of each parameter, 0 = certain; in the order of the table. */
     double scatter_1[CP_VEHICLE_PARAMETER_TOTAL];
+    /* Bounds of each parameter: the file's own, else the table's. */
+    double smallest[CP_VEHICLE_PARAMETER_TOTAL];
+    double largest[CP_VEHICLE_PARAMETER_TOTAL];
 #define CP_VEHICLE_FIELD(field, unit, value, smallest, largest, what) double field;
     CP_VEHICLE_PARAMETERS(CP_VEHICLE_FIELD)
 #undef CP_VEHICLE_FIELD

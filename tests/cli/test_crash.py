@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """crashpulse crash: the JSON and CSV that others build on, and what any crash must obey."""
 import argparse
+import contextlib
 import csv
 import io
 import json
@@ -18,8 +19,12 @@ ARGS = parser.parse_args()
 HEADER = "vehicle,time_s,ax_m_s2,ay_m_s2,vx_m_s,vy_m_s,x_m,y_m,yaw_rad,yaw_rate_rad_s,yaw_acc_rad_s2"
 
 
-def crash(*arguments, code=0):
-    done = subprocess.run([ARGS.crashpulse, "crash", ARGS.vehicle, *arguments], text=True,
+# A shipped vehicle with parameter scatter.
+SCATTERED = os.path.join(os.path.dirname(ARGS.vehicle), "small_car.yaml")
+
+
+def crash(*arguments, code=0, vehicle=ARGS.vehicle):
+    done = subprocess.run([ARGS.crashpulse, "crash", vehicle, *arguments], text=True,
                           capture_output=True, check=False)
     assert done.returncode == code, (done.returncode, done.stderr)
     return done
@@ -27,6 +32,19 @@ def crash(*arguments, code=0):
 
 def as_json(*arguments):
     return json.loads(crash("--format", "json", *arguments).stdout)
+
+
+def sampled(*arguments):
+    return json.loads(crash("--format", "json", *arguments, vehicle=SCATTERED).stdout)
+
+
+@contextlib.contextmanager
+def vehicle_file(parameters):
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "car.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(f"vehicle: car\nparameters:\n{parameters}\n")
+        yield path
 
 
 def pulses(*arguments):
@@ -110,6 +128,68 @@ class Crash(unittest.TestCase):
         arguments = ("--speed", "50", "--against", ARGS.vehicle, "--offset", "250", "--angle", "12")
         self.assertEqual(crash("--format", "json", *arguments).stdout,
                          crash("--format", "json", *arguments).stdout)
+
+    def test_samples_give_an_interval_around_the_nominal_value(self):
+        result = sampled("--speed", "50", "--samples", "60", "--seed", "3")
+        self.assertEqual((result["samples"], result["seed"], result["missed"]), (60, 3, 0))
+        (a,) = result["vehicles"]
+        self.assertEqual(set(a["quantities"]), {"olc_g", "delta_v_km_h", "peak_g"})
+        self.assertIn("mass_kg", a["scatter"])
+        for name, q in a["quantities"].items():
+            low, median, high = (q[key]["value"] for key in ("q05", "median", "q95"))
+            self.assertTrue(low < median < high, name)
+            self.assertTrue(low < q["nominal"] < high, name)
+            self.assertEqual((q["count"], q["censored"]), (60, 0))
+        alone = json.loads(crash("--speed", "50", "--format", "json", vehicle=SCATTERED).stdout)
+        self.assertEqual(a["quantities"]["olc_g"]["nominal"], alone["vehicles"][0]["olc_g"])
+
+    def test_samples_repeat_with_their_seed_only(self):
+        call = ("--speed", "45", "--samples", "10", "--against", SCATTERED, "--offset", "300")
+        self.assertEqual(sampled(*call, "--seed", "5"), sampled(*call, "--seed", "5"))
+        self.assertEqual(sampled(*call), sampled(*call, "--seed", "1"))
+        one, other = sampled(*call, "--seed", "5"), sampled(*call, "--seed", "6")
+        self.assertNotEqual(one["vehicles"], other["vehicles"])
+        self.assertEqual([v["role"] for v in one["vehicles"]], ["a", "b"])
+        # Two cars of one file are drawn apart.
+        olc = [v["quantities"]["olc_g"]["median"]["value"] for v in one["vehicles"]]
+        self.assertNotAlmostEqual(olc[0], olc[1], delta=1e-6)
+
+    def test_twice_the_scatter_doubles_the_interval(self):
+        def width(scatter):
+            with vehicle_file(f"  - {{name: mass_kg, value: 1640, scatter: {scatter}}}") as path:
+                done = crash("--speed", "50", "--samples", "200", "--format", "json", vehicle=path)
+            q = json.loads(done.stdout)["vehicles"][0]["quantities"]["peak_g"]
+            return q["q95"]["value"] - q["q05"]["value"]
+        self.assertAlmostEqual(width(0.04) / width(0.02), 2.0, delta=0.3)
+
+    def test_left_censored_samples_are_counted(self):
+        result = sampled("--speed", "1", "--samples", "8")
+        olc = result["vehicles"][0]["quantities"]["olc_g"]
+        self.assertEqual((olc["count"], olc["censored"], olc["censored_1"]), (8, 8, 1.0))
+        self.assertIsNone(olc["median"])
+        table = crash("--speed", "1", "--samples", "8", vehicle=SCATTERED).stdout
+        self.assertIn("100.0 %", table)
+
+    def test_samples_without_scatter_say_how_to_add_some(self):
+        done = crash("--speed", "50", "--samples", "8", code=2)
+        self.assertEqual(done.stdout, "")
+        self.assertIn(ARGS.vehicle, done.stderr)
+        self.assertIn("scatter: 0.03", done.stderr)
+
+    def test_samples_as_csv(self):
+        text = crash("--speed", "50", "--samples", "8", "--format", "csv", vehicle=SCATTERED).stdout
+        rows = list(csv.DictReader(io.StringIO(text)))
+        self.assertEqual([r["quantity"] for r in rows], ["olc_g", "delta_v_km_h", "peak_g"])
+        self.assertEqual(rows[0]["median_relation"], "=")
+        self.assertTrue(float(rows[0]["q05"]) < float(rows[0]["q95"]))
+
+    def test_what_is_wrong_with_an_overlay_says_so(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page = os.path.join(folder, "page.html")
+            done = crash("--speed", "50", "--animate", page, "--overlay-vehicle", "missing.yaml",
+                         code=2)
+            self.assertIn("overlay: missing.yaml", done.stderr)
+            self.assertFalse(os.path.exists(page))
 
     def test_cars_that_miss_are_bad_input(self):
         done = crash("--speed", "50", "--offset", "5000", code=2)

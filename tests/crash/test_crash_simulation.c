@@ -294,6 +294,26 @@ static void a_bad_step_is_refused(void **state)
     cp_crash_result_destroy(&result);
 }
 
+static void coasting_goes_on_where_the_contact_ended(void **state)
+{
+    (void)state;
+    // Slow enough that OLC is not decided when the record should end, so that it goes on longer.
+    cp_vehicle_model car = cp_vehicle_model_default();
+    cp_crash_configuration slow = crash_builder_configuration(&car, NULL, 5.0, 0.0, 900.0, 10.0);
+    cp_crash_result result = crash_builder_simulate(&car, NULL, &slow, &STANDARD);
+    const cp_pulse *pulse = &result.pulse[0];
+    assert_int_equal(pulse->sample_count, 801);
+    for (size_t s = 1; s < pulse->sample_count; s++) {
+        double dt = pulse->sample_interval_s;
+        double moved_m = pulse->channel[CP_CHANNEL_X][s] - pulse->channel[CP_CHANNEL_X][s - 1];
+        double turned = pulse->channel[CP_CHANNEL_YAW][s] - pulse->channel[CP_CHANNEL_YAW][s - 1];
+        double rate_rad_s = pulse->channel[CP_CHANNEL_YAW_RATE][s];
+        assert_true(fabs(moved_m) <= 5.1 / 3.6 * dt);
+        assert_near(turned, rate_rad_s * dt, 1e-9 + 0.001 * dt);
+    }
+    cp_crash_result_destroy(&result);
+}
+
 static int library_begin(void **state)
 {
     (void)state;
@@ -321,6 +341,7 @@ int main(void)
         cmocka_unit_test(olc_from_the_samples_is_the_same),
         cmocka_unit_test(same_inputs_give_the_same_bits_on_any_thread),
         cmocka_unit_test(nothing_explodes),
+        cmocka_unit_test(coasting_goes_on_where_the_contact_ended),
         cmocka_unit_test(a_bad_step_is_refused),
     };
     return cmocka_run_group_tests(tests, library_begin, library_end);

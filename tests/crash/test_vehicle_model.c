@@ -56,13 +56,19 @@ static void a_file_sets_what_it_names(void **state)
                                  "offset_max_mm: 1050, angle_max_deg: 30}\n"
                                  "parameters:\n"
                                  "  - {name: mass_kg, value: 1500, unit: kg, source: scale}\n"
-                                 "  - {name: friction_1, value: 0.3, scatter: 0.1}\n",
+                                 "  - {name: friction_1, value: 0.3, scatter: 0.1, min: 0.2, "
+                                 "max: 0.6}\n",
                                  &model, &error);
     if (status != CP_OK)
         fail_msg("%s", error.text);
     assert_string_equal(model.name, "test_car");
     assert_near(model.mass_kg, 1500.0, 0.0);
     assert_near(model.friction_1, 0.3, 0.0);
+    size_t friction = cp_vehicle_parameter_index("friction_1");
+    assert_near(model.scatter_1[friction], 0.1, 0.0);
+    assert_near(model.smallest[friction], 0.2, 0.0);
+    assert_near(model.largest[friction], 0.6, 0.0);
+    assert_near(model.largest[0], CP_VEHICLE_PARAMETER[0].largest, 0.0);
     assert_near(model.width_m, cp_vehicle_model_default().width_m, 0.0);
     assert_near(model.calibrated_speed_max_m_s, 56.0 / 3.6, 1e-12);
     assert_near(model.calibrated_offset_max_m, 1.05, 1e-12);

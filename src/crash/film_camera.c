@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "crash/film_camera.h"
+
+#include <stdlib.h>
+
+// The film's parts are the model's bodies, one for one.
+_Static_assert((int)CP_FILM_PART_COUNT == (int)CP_BODY_COUNT, "one part a body");
+_Static_assert((int)CP_FILM_LONGITUDINAL_LEFT == (int)CP_BODY_LONGITUDINAL_LEFT &&
+                   (int)CP_FILM_CRASH_BOX_LEFT == (int)CP_BODY_CRASH_BOX_LEFT &&
+                   (int)CP_FILM_ENGINE == (int)CP_BODY_ENGINE,
+               "in the same order");
+
+static cp_film_shape shape_of_outline(const cp_outline *outline)
+{
+    return (cp_film_shape){.centre_m = outline->centre_m,
+                           .yaw_rad = atan2(outline->along.y, outline->along.x),
+                           .length_m = 2.0 * outline->half_length_m,
+                           .width_m = 2.0 * outline->half_width_m,
+                           .radius_m = outline->radius_m};
+}
+
+static cp_film_shape seen_from(cp_pose frame, cp_film_shape shape)
+{
+    shape.centre_m = cp_pose_to_local(frame, shape.centre_m);
+    shape.yaw_rad = cp_wrap_angle(shape.yaw_rad - frame.yaw_rad);
+    return shape;
+}
+
+cp_status cp_film_camera_begin(cp_film_camera *camera, cp_crash_film *film, size_t last_sample,
+                               double time_step_s, cp_pose origin, const cp_outline *barrier,
+                               cp_error *error)
+{
+    *camera = (cp_film_camera){.film = film, .origin = origin};
+    if (film == NULL)
+        return CP_OK;
+    if (!(film->interval_s > 0.0))
+        return cp_fail(error, CP_BAD_INPUT, "interval_s of a film must be > 0, found %g",
+                       film->interval_s);
+    cp_crash_film_destroy(film);
+    camera->every = (size_t)fmax(1.0, round(film->interval_s / time_step_s));
+    film->frame_room = last_sample / camera->every + 1;
+    film->frame = calloc(film->frame_room, sizeof *film->frame);
+    if (film->frame == NULL)
+        return cp_fail_memory(error, "a film");
+    film->against_barrier = barrier != NULL;
+    if (barrier != NULL)
+        film->barrier = seen_from(origin, shape_of_outline(barrier));
+    return CP_OK;
+}
+
+// ---- parts -----------------------------------------------------------------------------------
+
+static cp_vec2 ahead_of(dBodyID body, double ahead_m)
+{
+    cp_pose pose = cp_body_pose(body);
+    return cp_pose_to_world(pose, (cp_vec2){ahead_m, 0.0});
+}
+
+// A member seen from above: a bar from one point to another.
+static cp_film_shape bar(cp_vec2 rear_m, cp_vec2 front_m, double yaw_rad, double width_m)
+{
+    cp_vec2 reach = cp_vec2_sub(front_m, rear_m);
+    double length_m = cp_vec2_dot(reach, cp_vec2_heading(yaw_rad));
+    return (cp_film_shape){.centre_m = cp_vec2_scale(cp_vec2_add(rear_m, front_m), 0.5),
+                           .yaw_rad = yaw_rad,
+                           .length_m = fmax(0.0, length_m),
+                           .width_m = width_m,
+                           .radius_m = 0.01};
+}
+
+// Longitudinal from its foot on the root to its front end, crash box from there to the cross
+// member: what the axial elements leave of them.
+static void take_members(const cp_car *car, int side, cp_film_shape part[CP_FILM_PART_COUNT])
+{
+    const cp_vehicle_model *m = car->model;
+    dBodyID longitudinal = car->body[CP_BODY_LONGITUDINAL_LEFT + side];
+    dBodyID box = car->body[CP_BODY_CRASH_BOX_LEFT + side];
+    cp_pose root = cp_body_pose(car->body[CP_BODY_ROOT]);
+    double yaw_rad = cp_body_pose(longitudinal).yaw_rad;
+    cp_vec2 foot_m = cp_pose_to_world(root, car->axial[side].rear_point_m);
+    cp_vec2 joint_m = ahead_of(longitudinal, 0.5 * m->longitudinal_length_m);
+    cp_vec2 front_m = ahead_of(box, 0.5 * m->crash_box_length_m);
+    part[CP_FILM_LONGITUDINAL_LEFT + side] = bar(foot_m, joint_m, yaw_rad, 0.1);
+    part[CP_FILM_CRASH_BOX_LEFT + side] = bar(joint_m, front_m, yaw_rad, 0.14);
+}
+
+static void take_parts(const cp_car *car, cp_film_car *seen)
+{
+    for (int k = 0; k < CP_OUTLINE_COUNT; k++) {
+        cp_outline outline = cp_car_outline_now(car, k);
+        seen->part[car->outline[k].body] = shape_of_outline(&outline);
+    }
+    for (int side = 0; side < 2; side++)
+        take_members(car, side, seen->part);
+
+    // In the plane of the simulation so far; now from the car itself.
+    cp_body_state cog = cp_car_cog_state(car);
+    for (int k = 0; k < CP_FILM_PART_COUNT; k++)
+        seen->part[k] = seen_from((cp_pose){cog.cog_m, cog.yaw_rad}, seen->part[k]);
+}
+
+// ---- frames ----------------------------------------------------------------------------------
+
+// The next frame of the film with the poses of the cars in it; NULL when none is due.
+static cp_film_frame *next_frame(const cp_film_camera *camera, size_t sample, double time_step_s,
+                                 const cp_pose ground[2], int car_count)
+{
+    cp_crash_film *film = camera->film;
+    if (film == NULL || sample % camera->every != 0 || film->frame_count == film->frame_room)
+        return NULL;
+    cp_film_frame *frame = &film->frame[film->frame_count++];
+    frame->time_s = time_step_s * (double)sample;
+    for (int c = 0; c < car_count; c++)
+        frame->car[c].pose = (cp_pose){cp_pose_to_local(camera->origin, ground[c].position_m),
+                                       cp_wrap_angle(ground[c].yaw_rad - camera->origin.yaw_rad)};
+    return frame;
+}
+
+void cp_film_camera_take(const cp_film_camera *camera, size_t sample, double time_step_s,
+                         const cp_car *car, const cp_pose ground[2], int car_count)
+{
+    cp_film_frame *frame = next_frame(camera, sample, time_step_s, ground, car_count);
+    for (int c = 0; frame != NULL && c < car_count; c++)
+        take_parts(&car[c], &frame->car[c]);
+}
+
+void cp_film_camera_take_coasting(const cp_film_camera *camera, size_t sample, double time_step_s,
+                                  const cp_pose ground[2], int car_count)
+{
+    cp_film_frame *frame = next_frame(camera, sample, time_step_s, ground, car_count);
+    for (int c = 0; frame != NULL && c < car_count; c++)
+        for (int k = 0; k < CP_FILM_PART_COUNT; k++)
+            frame->car[c].part[k] = frame[-1].car[c].part[k];
+}

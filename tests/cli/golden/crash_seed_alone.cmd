@@ -1,0 +1,1 @@
+"$crashpulse" crash car.yaml --speed 50 --seed 3

@@ -1,0 +1,1 @@
+"$crashpulse" validate x.yaml --pulse p --channels 93,x

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+// cmocka wants the four above first.
+#include <cmocka.h>
+
+#include "builders/crash_builder.h"
+#include "crash/parameter_scatter.h"
+#include "crash/validity.h"
+
+#include <glob.h>
+#include <string.h>
+
+/* Every vehicle file that comes with the program. */
+
+typedef void check_vehicle(const char *path, const cp_vehicle_model *model);
+
+static void for_every_vehicle(check_vehicle *check)
+{
+    char pattern[4096];
+    const char *source = getenv("CRASHPULSE_SOURCE");
+    snprintf(pattern, sizeof pattern, "%s/db/vehicles/*.yaml", source ? source : ".");
+    glob_t files;
+    assert_int_equal(glob(pattern, 0, NULL, &files), 0);
+    int count = 0;
+    for (size_t k = 0; k < files.gl_pathc; k++) {
+        // Fit files describe a search for a vehicle.
+        if (strstr(files.gl_pathv[k], ".fit.yaml") != NULL)
+            continue;
+        cp_vehicle_model model;
+        cp_error error = {0};
+        if (cp_vehicle_model_load(files.gl_pathv[k], &model, &error) != CP_OK)
+            fail_msg("%s", error.text);
+        check(files.gl_pathv[k], &model);
+        count++;
+    }
+    globfree(&files);
+    assert_true(count >= 4);
+}
+
+static void crash_it(const char *path, const cp_vehicle_model *model)
+{
+    // Against a wall, and against a mid-size car with offset.
+    cp_vehicle_model other = cp_vehicle_model_default();
+    cp_crash_options options = cp_crash_options_default();
+    for (int cars = 0; cars < 2; cars++) {
+        const cp_vehicle_model *opponent = cars ? &other : NULL;
+        cp_crash_configuration configuration =
+            crash_builder_configuration(model, opponent, 50.0, 50.0, cars ? 400.0 : 0.0, 0.0);
+        cp_crash_result result = crash_builder_simulate(model, opponent, &configuration, &options);
+        double olc_g = result.severity[0].olc.olc_g;
+        if (!(olc_g > 8.0 && olc_g < 45.0))
+            fail_msg("%s: OLC at 50 km/h is %g g", path, olc_g);
+        if (!(result.crush_m[0] > 0.2 && result.crush_m[0] < 1.0))
+            fail_msg("%s: crush at 50 km/h is %g m", path, result.crush_m[0]);
+        if (!(result.energy.highest_mechanical_j <= 1.01 * result.energy.start_j))
+            fail_msg("%s: energy rose", path);
+        cp_crash_result_destroy(&result);
+    }
+}
+
+static void every_vehicle_can_be_crashed(void **state)
+{
+    (void)state;
+    for_every_vehicle(crash_it);
+}
+
+static void expect_marked(const char *path, const cp_vehicle_model *model)
+{
+    cp_crash_configuration configuration =
+        crash_builder_configuration(model, NULL, 50.0, 0.0, 0.0, 0.0);
+    cp_vec2 contact_m = cp_crash_contact_point(model, NULL, &configuration);
+    cp_crash_description description = cp_crash_describe(model, NULL, &configuration, contact_m);
+    unsigned outside = cp_validity(model, NULL, &configuration, &description, 0);
+    bool calibrated = model->calibrated_speed_max_m_s > 0.0;
+    if (((outside & CP_OUTSIDE_MODEL) != 0) == calibrated)
+        fail_msg("%s: an uncalibrated model must be marked as one", path);
+    if (!calibrated && strstr(model->description, "not calibrated") == NULL)
+        fail_msg("%s: its description must say that it is not calibrated", path);
+}
+
+static void a_vehicle_never_calibrated_says_so(void **state)
+{
+    (void)state;
+    for_every_vehicle(expect_marked);
+}
+
+static void draw_some(const char *path, const cp_vehicle_model *model)
+{
+    for (uint64_t k = 0; k < 50; k++) {
+        cp_vehicle_model drawn;
+        cp_error error = {0};
+        if (cp_parameter_scatter_draw(model, cp_rng_key_seed(1), k, &drawn, NULL, &error) != CP_OK)
+            fail_msg("%s: %s", path, error.text);
+    }
+}
+
+static void scatter_of_every_vehicle_can_be_drawn(void **state)
+{
+    (void)state;
+    for_every_vehicle(draw_some);
+}
+
+static int library_begin(void **state)
+{
+    (void)state;
+    cp_error error = {0};
+    return cp_crash_library_begin(&error) == CP_OK ? 0 : -1;
+}
+
+static int library_end(void **state)
+{
+    (void)state;
+    cp_crash_library_end();
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_vehicle_can_be_crashed),
+        cmocka_unit_test(a_vehicle_never_calibrated_says_so),
+        cmocka_unit_test(scatter_of_every_vehicle_can_be_drawn),
+    };
+    return cmocka_run_group_tests(tests, library_begin, library_end);
+}

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes small_car.yaml, suv.yaml and van.yaml beside itself, scaled from another vehicle file:
 
-    python3 db/vehicles/scale.py db/vehicles/mid_size.yaml
+    python3 db/vehicles/scale.py db/vehicles/honda_accord_2014.yaml
 
 Two ratios to the base make a vehicle: its mass, and the length of its front (of all that collapses
 and of the gaps in it). Forces go with mass over length of the front: every kilogram has the same

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 // A candidate that is no car counts as this far off: far worse than any car.
@@ -136,14 +137,22 @@ static cp_status search_locally(search *run, double *point)
     run->time_step_s = fit->local_time_step_s;
     const int restarts = 3;
     cp_status status = CP_OK;
+    double best[CP_UNKNOWNS_MAX], best_value = value_at(run, point, fit->unknown_count);
     cp_progress_begin(&run->progress, "local search", fit->local_evaluations);
     for (int k = 0; status == CP_OK && k < restarts; k++) {
         double value = 0.0;
+        memcpy(best, point, sizeof best);
         status = cp_simplex_search(value_at, run, fit->unknown_count, 0.15 / (k + 1),
                                    fit->local_evaluations / restarts, point, &value, show_simplex,
                                    run->error);
         if (status == CP_OK)
             status = run->failed;
+
+        // The simplex starts a little inside the bounds: it may end above where it came from.
+        if (value < best_value)
+            best_value = value;
+        else
+            memcpy(point, best, sizeof best);
     }
     cp_progress_end(&run->progress);
     return status;
@@ -159,7 +168,7 @@ static cp_status fit_once(const cp_fit *fit, const bool *use, const char *state_
                   .pulse_error = found->pulse_error,
                   .failed = CP_OK,
                   .error = error};
-    double point[CP_UNKNOWNS_MAX];
+    double point[CP_UNKNOWNS_MAX] = {0};
     cp_status status = search_globally(&run, state_path, seed, point);
     if (status == CP_OK)
         status = search_locally(&run, point);

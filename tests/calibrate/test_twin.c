@@ -209,12 +209,11 @@ static void run_experiment(experiment *twin)
                       twin->secrets[k].truth,
                       cp_unknown_get(&calibration.model, twin->secrets[k].name));
 
-    // A start worth leaving, an end within a hundredth of the floor, OLC to 0.1 g.
+    // A start worth leaving, an end within a hundredth of the floor, every OLC to 0.1 g.
     assert_true(start_error > 1.5 * floor_error);
     assert_true(calibration.objective < 1.01 * floor_error);
     assert_true(before_g > 0.5);
-    assert_true(mean_g < 0.1);
-    assert_true(largest_g < 0.3);
+    assert_true(largest_g < 0.1);
     cp_calibration_destroy(&calibration);
     cp_fit_destroy(&fit);
     remove_files(twin);
@@ -279,8 +278,8 @@ static void the_study_s_twin_is_found_through_noise(void **state)
     draw_held_out(held_out, HELD_OUT);
     experiment twin = {.secrets = SECRETS,
                        .secret_count = sizeof SECRETS / sizeof *SECRETS,
-                       .budget = "seed: 96\nalgorithm: sade\npopulation: 30\ngenerations: 60\n"
-                                 "local_evaluations: 1800\nthreads: 2\n",
+                       .budget = "seed: 96\nalgorithm: cmaes\npopulation: 20\ngenerations: 15\n"
+                                 "local_evaluations: 600\nthreads: 2\n",
                        .case_count = study.count,
                        .cases = study.cases,
                        .held_out_count = HELD_OUT,

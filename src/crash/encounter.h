@@ -12,9 +12,9 @@
  * limit (Cundall and Strack 1979), so that bodies can really stick.
  *
  * Applied forces rather than ODE contact joints: the joints of a car then form a system without
- * inequalities, which ODE solves by one factorisation, and two cars stay two independent systems
- * (measured: two thirds of the time against a barrier, half car to car). Damping is limited to
- * what stops the touching bodies within a step, so it only ever dissipates. */
+ * inequalities, which ODE solves by one factorisation, and two cars stay two independent systems.
+ * Damping is limited to what stops the touching bodies within a step, so it only ever dissipates.
+ */
 
 /* One pair of outlines and its contact of the present step. */
 typedef struct cp_encounter_pair {

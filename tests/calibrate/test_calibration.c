@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "builders/assert_near.h"
+#include "builders/crash_library.h"
 
 #include "calibrate/calibration.h"
 #include "calibrate/objective.h"
@@ -153,20 +154,6 @@ static void errors_name_line_and_field(void **state)
     }
 }
 
-static int library_begin(void **state)
-{
-    (void)state;
-    cp_error error = {0};
-    return cp_crash_library_begin(&error) == CP_OK ? 0 : -1;
-}
-
-static int library_end(void **state)
-{
-    (void)state;
-    cp_crash_library_end();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -174,5 +161,5 @@ int main(void)
         cmocka_unit_test(threads_do_not_change_the_result),
         cmocka_unit_test(errors_name_line_and_field),
     };
-    return cmocka_run_group_tests(tests, library_begin, library_end);
+    return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "builders/assert_near.h"
+#include "builders/crash_library.h"
 
 #include "calibrate/pulse_objective.h"
 #include "core/units.h"
@@ -158,20 +159,6 @@ static void the_mean_is_weighted_and_punishes_failures(void **state)
     assert_near(cp_objective_pulse_mean(pulses, errors, 3, use, 100.0), 31.0, 1e-12);
 }
 
-static int library_begin(void **state)
-{
-    (void)state;
-    cp_error error = {0};
-    return cp_crash_library_begin(&error) == CP_OK ? 0 : -1;
-}
-
-static int library_end(void **state)
-{
-    (void)state;
-    cp_crash_library_end();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -181,5 +168,5 @@ int main(void)
         cmocka_unit_test(threads_do_not_change_the_errors),
         cmocka_unit_test(the_mean_is_weighted_and_punishes_failures),
     };
-    return cmocka_run_group_tests(tests, library_begin, library_end);
+    return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "builders/assert_near.h"
+#include "builders/crash_library.h"
 
 #include "calibrate/calibration.h"
 #include "calibrate/objective.h"
@@ -288,25 +289,11 @@ static void the_study_s_twin_is_found_through_noise(void **state)
     cp_reference_destroy(&study);
 }
 
-static int library_begin(void **state)
-{
-    (void)state;
-    cp_error error = {0};
-    return cp_crash_library_begin(&error) == CP_OK ? 0 : -1;
-}
-
-static int library_end(void **state)
-{
-    (void)state;
-    cp_crash_library_end();
-    return 0;
-}
-
 int main(int argc, char **argv)
 {
     const struct CMUnitTest small[] = {cmocka_unit_test(a_small_twin_is_found_through_noise)};
     const struct CMUnitTest full[] = {cmocka_unit_test(the_study_s_twin_is_found_through_noise)};
     if (argc > 1 && strcmp(argv[1], "--full") == 0)
-        return cmocka_run_group_tests(full, library_begin, library_end);
-    return cmocka_run_group_tests(small, library_begin, library_end);
+        return cmocka_run_group_tests(full, crash_library_begin, crash_library_end);
+    return cmocka_run_group_tests(small, crash_library_begin, crash_library_end);
 }

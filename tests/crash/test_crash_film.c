@@ -8,6 +8,7 @@
 
 #include "builders/assert_near.h"
 #include "builders/crash_builder.h"
+#include "builders/crash_library.h"
 #include "crash/contact.h"
 
 #include <string.h>
@@ -153,20 +154,6 @@ static void a_film_without_interval_is_refused(void **state)
     cp_crash_film_destroy(&film);
 }
 
-static int begin(void **state)
-{
-    (void)state;
-    cp_error error = {0};
-    return cp_crash_library_begin(&error) == CP_OK ? 0 : -1;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    cp_crash_library_end();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -176,5 +163,5 @@ int main(void)
         cmocka_unit_test(filming_changes_nothing),
         cmocka_unit_test(a_film_without_interval_is_refused),
     };
-    return cmocka_run_group_tests(tests, begin, end);
+    return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

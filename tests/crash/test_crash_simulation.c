@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "builders/assert_near.h"
+#include "builders/crash_library.h"
 
 #include "builders/crash_builder.h"
 
@@ -314,20 +315,6 @@ static void coasting_goes_on_where_the_contact_ended(void **state)
     cp_crash_result_destroy(&result);
 }
 
-static int library_begin(void **state)
-{
-    (void)state;
-    cp_error error = {0};
-    return cp_crash_library_begin(&error) == CP_OK ? 0 : -1;
-}
-
-static int library_end(void **state)
-{
-    (void)state;
-    cp_crash_library_end();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -344,5 +331,5 @@ int main(void)
         cmocka_unit_test(coasting_goes_on_where_the_contact_ended),
         cmocka_unit_test(a_bad_step_is_refused),
     };
-    return cmocka_run_group_tests(tests, library_begin, library_end);
+    return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

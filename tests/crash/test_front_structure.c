@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "builders/assert_near.h"
+#include "builders/crash_library.h"
 
 #include "builders/crash_builder.h"
 #include "crash/front_structure.h"
@@ -131,20 +132,6 @@ static void masses_that_do_not_fit_are_refused(void **state)
     dWorldDestroy(world);
 }
 
-static int library_begin(void **state)
-{
-    (void)state;
-    cp_error error = {0};
-    return cp_crash_library_begin(&error) == CP_OK ? 0 : -1;
-}
-
-static int library_end(void **state)
-{
-    (void)state;
-    cp_crash_library_end();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -154,5 +141,5 @@ int main(void)
         cmocka_unit_test(a_mass_on_constant_force_stops_by_energy),
         cmocka_unit_test(masses_that_do_not_fit_are_refused),
     };
-    return cmocka_run_group_tests(tests, library_begin, library_end);
+    return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

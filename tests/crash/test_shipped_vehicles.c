@@ -6,6 +6,8 @@
 // cmocka wants the four above first.
 #include <cmocka.h>
 
+#include "builders/crash_library.h"
+
 #include "builders/crash_builder.h"
 #include "crash/parameter_scatter.h"
 #include "crash/validity.h"
@@ -103,20 +105,6 @@ static void scatter_of_every_vehicle_can_be_drawn(void **state)
     for_every_vehicle(draw_some);
 }
 
-static int library_begin(void **state)
-{
-    (void)state;
-    cp_error error = {0};
-    return cp_crash_library_begin(&error) == CP_OK ? 0 : -1;
-}
-
-static int library_end(void **state)
-{
-    (void)state;
-    cp_crash_library_end();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -124,5 +112,5 @@ int main(void)
         cmocka_unit_test(a_vehicle_never_calibrated_says_so),
         cmocka_unit_test(scatter_of_every_vehicle_can_be_drawn),
     };
-    return cmocka_run_group_tests(tests, library_begin, library_end);
+    return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

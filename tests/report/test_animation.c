@@ -6,6 +6,8 @@
 // cmocka wants the four above first.
 #include <cmocka.h>
 
+#include "builders/crash_library.h"
+
 #include "builders/crash_builder.h"
 #include "core/file.h"
 #include "report/animation.h"
@@ -103,25 +105,11 @@ static void a_crash_nobody_filmed_is_refused(void **state)
     destroy(&crash);
 }
 
-static int library_begin(void **state)
-{
-    (void)state;
-    cp_error error = {0};
-    return cp_crash_library_begin(&error) == CP_OK ? 0 : -1;
-}
-
-static int library_end(void **state)
-{
-    (void)state;
-    cp_crash_library_end();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_page_carries_frames_and_pulses_of_its_runs),
         cmocka_unit_test(a_crash_nobody_filmed_is_refused),
     };
-    return cmocka_run_group_tests(tests, library_begin, library_end);
+    return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

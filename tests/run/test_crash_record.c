@@ -10,6 +10,8 @@
 
 #include <cmocka.h>
 
+#include "builders/crash_library.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -126,20 +128,6 @@ static void crash_without_simulation_is_kept(void **state)
     cp_result_rows_destroy(&rows);
 }
 
-static int library_begin(void **state)
-{
-    cp_error error = {0};
-    (void)state;
-    return cp_crash_library_begin(&error) != CP_OK;
-}
-
-static int library_end(void **state)
-{
-    (void)state;
-    cp_crash_library_end();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -147,5 +135,5 @@ int main(void)
         cmocka_unit_test(olc_is_for_struck_fronts_only),
         cmocka_unit_test(crash_without_simulation_is_kept),
     };
-    return cmocka_run_group_tests(tests, library_begin, library_end);
+    return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

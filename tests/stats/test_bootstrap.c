@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "stats/assert_near.h"
+#include "builders/assert_near.h"
 
 enum { CLUSTERS = 30, VALUES = 6, MOST = 256 };
 

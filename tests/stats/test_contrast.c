@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "stats/assert_near.h"
+#include "builders/assert_near.h"
 
 enum { MOST = 128 };
 

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "stats/assert_near.h"
+#include "builders/assert_near.h"
 
 static const size_t ONE_CLUSTER[16] = {0};
 

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "stats/assert_near.h"
+#include "builders/assert_near.h"
 
 // Published 95 % limits of a Poisson mean (Garwood 1936; tables of exact limits).
 static void garwood_agrees_with_the_tables(void **state)

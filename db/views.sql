@@ -203,3 +203,95 @@ JOIN scenario AS s ON s.id = r.scenario_id
 JOIN variant AS v ON v.id = r.variant_id
 GROUP BY s.id, v.id
 ORDER BY s.number, v.number;
+
+-- Counterfactual pairs: one row for each crash of the baseline and each treatment, both crashes side
+-- by side. replication_id clusters pairs that belong together. *_olc_g are of the frontally struck
+-- vehicles the larger value, 0 when left-censored, NULL without one; treated_olc_g is 0 for avoided.
+DROP VIEW IF EXISTS counterfactual_pair;
+CREATE VIEW counterfactual_pair AS
+WITH baseline_olc AS (
+    SELECT crash_id, CASE WHEN sum(frontal) > 0
+                               AND sum(frontal = 1 AND olc_status = 'simulation_failed') = 0
+                          THEN max(CASE WHEN frontal = 1 THEN coalesce(olc_g, 0.0) END) END AS olc_g
+    FROM crash_vehicle
+    GROUP BY crash_id
+), treated_olc AS (
+    SELECT crash_id, variant_id,
+           CASE WHEN sum(frontal) > 0 AND sum(frontal = 1 AND olc_status = 'simulation_failed') = 0
+                THEN max(CASE WHEN frontal = 1 THEN coalesce(olc_g, 0.0) END) END AS olc_g
+    FROM counterfactual_vehicle
+    GROUP BY crash_id, variant_id
+)
+SELECT s.name AS scenario, v.name AS variant, r.number AS replication, c.replication_id,
+       r.scenario_id, x.variant_id, x.crash_id,
+       x.outcome, x.outcome_olc, x.reason, x.detail, x.new_crashes,
+       c.time_s AS baseline_time_s, n.checkpoint_s,
+       c.crash_type AS baseline_crash_type, c.validity AS baseline_validity,
+       c.closing_speed_m_s AS baseline_closing_speed_m_s,
+       b.olc_g AS baseline_olc_g,
+       x.time_s AS treated_time_s, x.crash_type AS treated_crash_type,
+       x.validity AS treated_validity,
+       x.closing_speed_m_s AS treated_closing_speed_m_s,
+       CASE WHEN x.outcome = 'avoided' THEN 0.0 ELSE t.olc_g END AS treated_olc_g
+FROM counterfactual AS x
+JOIN crash AS c ON c.id = x.crash_id
+JOIN null_treatment AS n ON n.crash_id = x.crash_id
+JOIN replication AS r ON r.id = c.replication_id
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = x.variant_id
+LEFT JOIN baseline_olc AS b ON b.crash_id = x.crash_id
+LEFT JOIN treated_olc AS t ON t.crash_id = x.crash_id AND t.variant_id = x.variant_id;
+
+-- Outcomes of each treatment in each scenario. crashes are the baseline's confirmed crashes: the
+-- outcomes add up to them, by closing speed (here) and by OLC (next view).
+DROP VIEW IF EXISTS counterfactual_outcomes;
+CREATE VIEW counterfactual_outcomes AS
+SELECT s.name AS scenario, v.name AS variant, r.scenario_id, x.variant_id,
+       count(*) AS crashes,
+       sum(x.outcome = 'invalid') AS invalid,
+       sum(x.outcome = 'changed_opponent') AS changed_opponent,
+       sum(x.outcome = 'avoided') AS avoided,
+       sum(x.outcome = 'mitigated') AS mitigated,
+       sum(x.outcome = 'aggravated') AS aggravated,
+       sum(x.outcome = 'unchanged') AS unchanged,
+       coalesce(sum(x.new_crashes), 0) AS new_crashes
+FROM counterfactual AS x
+JOIN crash AS c ON c.id = x.crash_id
+JOIN replication AS r ON r.id = c.replication_id
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = x.variant_id
+GROUP BY r.scenario_id, x.variant_id
+ORDER BY s.number, v.number;
+
+DROP VIEW IF EXISTS counterfactual_outcomes_by_olc;
+CREATE VIEW counterfactual_outcomes_by_olc AS
+SELECT s.name AS scenario, v.name AS variant, r.scenario_id, x.variant_id,
+       count(*) AS crashes,
+       sum(x.outcome_olc = 'invalid') AS invalid,
+       sum(x.outcome_olc = 'changed_opponent') AS changed_opponent,
+       sum(x.outcome_olc = 'avoided') AS avoided,
+       sum(x.outcome_olc = 'mitigated') AS mitigated,
+       sum(x.outcome_olc = 'aggravated') AS aggravated,
+       sum(x.outcome_olc = 'unchanged') AS unchanged,
+       sum(x.outcome_olc = 'no_olc') AS no_olc
+FROM counterfactual AS x
+JOIN crash AS c ON c.id = x.crash_id
+JOIN replication AS r ON r.id = c.replication_id
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = x.variant_id
+GROUP BY r.scenario_id, x.variant_id
+ORDER BY s.number, v.number;
+
+-- Whether the null treatment reproduced the baseline's crashes, by crash type.
+DROP VIEW IF EXISTS null_treatment_check;
+CREATE VIEW null_treatment_check AS
+SELECT s.name AS scenario, c.crash_type, count(*) AS crashes,
+       sum(n.status = 'reproduced') AS reproduced,
+       sum(n.status IN ('inserted_late', 'no_checkpoint')) AS without_checkpoint,
+       sum(n.status IN ('not_reproduced', 'branch_failed', 'checkpoint_lost')) AS failed
+FROM null_treatment AS n
+JOIN crash AS c ON c.id = n.crash_id
+JOIN replication AS r ON r.id = c.replication_id
+JOIN scenario AS s ON s.id = r.scenario_id
+GROUP BY r.scenario_id, c.crash_type
+ORDER BY s.number, c.crash_type;

@@ -20,7 +20,8 @@ int64_t cp_replication_row_id(const char *scenario, const char *variant, const c
 static const char PREPARE[] =
     "DROP TABLE IF EXISTS temp.old_study; DROP TABLE IF EXISTS temp.old_scenario;"
     "DROP TABLE IF EXISTS temp.old_variant; DROP TABLE IF EXISTS temp.old_vehicle_model;"
-    "DROP TABLE IF EXISTS temp.plan;"
+    "DROP TABLE IF EXISTS temp.plan; DROP TABLE IF EXISTS temp.planned_variant;"
+    "CREATE TEMP TABLE planned_variant (id INTEGER PRIMARY KEY);"
     "CREATE TEMP TABLE old_study AS SELECT * FROM study;"
     "CREATE TEMP TABLE old_scenario AS SELECT * FROM scenario;"
     "CREATE TEMP TABLE old_variant AS SELECT * FROM variant;"
@@ -129,12 +130,16 @@ static cp_status write_scenarios(cp_store *store, const cp_plan_rows *rows, cp_e
 
 static cp_status write_variants(cp_store *store, const cp_plan_rows *rows, cp_error *error)
 {
-    cp_statement s;
+    cp_statement s, planned = {0};
     cp_status status = cp_statement_prepare(
         store, "planning a variant",
         "INSERT INTO variant VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (id) DO UPDATE SET "
         "number = ?3, is_baseline = ?4, functions = ?5",
         &s, error);
+    if (status == CP_OK)
+        status =
+            cp_statement_prepare(store, "planning a variant",
+                                 "INSERT INTO temp.planned_variant VALUES (?1)", &planned, error);
     for (size_t k = 0; status == CP_OK && k < rows->variant_count; k++) {
         const cp_variant_row *row = &rows->variant[k];
         cp_bind_integer(&s, 1, cp_hash_row_id(row->name));
@@ -143,7 +148,11 @@ static cp_status write_variants(cp_store *store, const cp_plan_rows *rows, cp_er
         cp_bind_integer(&s, 4, row->is_baseline);
         cp_bind_text(&s, 5, row->functions);
         status = cp_statement_run(&s, error);
+        cp_bind_integer(&planned, 1, cp_hash_row_id(row->name));
+        if (status == CP_OK)
+            status = cp_statement_run(&planned, error);
     }
+    cp_statement_finish(&planned);
     cp_statement_finish(&s);
     return status;
 }
@@ -286,7 +295,9 @@ static const char EXCHANGE[] =
     "ON CONFLICT (id) DO UPDATE SET number = excluded.number, "
     "configuration_hash = excluded.configuration_hash;"
     "DELETE FROM scenario WHERE id NOT IN (SELECT scenario_id FROM replication);"
-    "DELETE FROM variant WHERE id NOT IN (SELECT variant_id FROM replication)";
+    // Treatments of a counterfactual study have no replications of their own.
+    "DELETE FROM variant WHERE id NOT IN (SELECT variant_id FROM replication) AND id NOT IN "
+    "(SELECT id FROM temp.planned_variant)";
 
 static cp_status write_all(cp_store *store, const cp_plan_rows *rows, cp_error *error)
 {

@@ -2,14 +2,13 @@
 #include "store/result_rows.h"
 
 #include "crash/validity.h"
+#include "store/counterfactual_rows.h"
+#include "store/crash_binding.h"
 #include "store/pulse_codec.h"
-#include "store/store_sqlite.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define CRASHES_MAX (1 << 20) /* per replication: room in the row id */
 
 static const char *const ROLE[2] = {"a", "b"};
 
@@ -54,16 +53,24 @@ cp_sumo_collision_row *cp_result_rows_add_sumo_collision(cp_result_rows *rows)
     return added;
 }
 
+void cp_crash_row_destroy(cp_crash_row *crash)
+{
+    for (int v = 0; v < 2; v++) {
+        free(crash->vehicle[v].sumo_id);
+        free(crash->vehicle[v].sumo_type);
+        free(crash->vehicle[v].vehicle_model);
+        free(crash->vehicle[v].pulse);
+    }
+    *crash = (cp_crash_row){0};
+}
+
 void cp_result_rows_destroy(cp_result_rows *rows)
 {
-    for (size_t k = 0; k < rows->crash_count; k++) {
-        for (int v = 0; v < 2; v++) {
-            free(rows->crash[k].vehicle[v].sumo_id);
-            free(rows->crash[k].vehicle[v].sumo_type);
-            free(rows->crash[k].vehicle[v].vehicle_model);
-            free(rows->crash[k].vehicle[v].pulse);
-        }
-    }
+    for (size_t k = 0; k < rows->crash_count; k++)
+        cp_crash_row_destroy(&rows->crash[k]);
+    if (rows->counterfactual != NULL)
+        cp_counterfactual_rows_destroy(rows->counterfactual);
+    free(rows->counterfactual);
     for (size_t k = 0; k < rows->contact_count; k++) {
         free(rows->contact[k].vehicle[0]);
         free(rows->contact[k].vehicle[1]);
@@ -94,7 +101,7 @@ static cp_status write_crash(cp_statement *s, const cp_result_rows *rows, size_t
 {
     const cp_crash_row *crash = &rows->crash[number];
     char validity[CP_VALIDITY_TEXT_SIZE];
-    cp_bind_integer(s, 1, rows->replication_id * CRASHES_MAX + (int64_t)number);
+    cp_bind_integer(s, 1, rows->replication_id * CP_CRASHES_MAX + (int64_t)number);
     cp_bind_integer(s, 2, rows->replication_id);
     cp_bind_integer(s, 3, (int64_t)number);
     cp_bind_real(s, 4, crash->time_s);
@@ -155,19 +162,25 @@ static void bind_severity(cp_statement *s, const cp_crash_vehicle_row *vehicle)
     cp_bind_real(s, 37, severity->end_s);
 }
 
+void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_vehicle_row *vehicle,
+                           char validity[CP_VALIDITY_TEXT_SIZE])
+{
+    bind_vehicle_state(s, vehicle);
+    cp_bind_text(s, 21, cp_validity_text(vehicle->outside, validity));
+    bind_severity(s, vehicle);
+}
+
 static cp_status write_vehicle(cp_statement *s, const cp_result_rows *rows, size_t number, int role,
                                cp_error *error)
 {
     const cp_crash_row *crash = &rows->crash[number];
     const cp_crash_vehicle_row *vehicle = &crash->vehicle[role];
     char validity[CP_VALIDITY_TEXT_SIZE];
-    cp_bind_integer(s, 1, rows->replication_id * CRASHES_MAX + (int64_t)number);
+    cp_bind_integer(s, 1, rows->replication_id * CP_CRASHES_MAX + (int64_t)number);
     cp_bind_text(s, 2, ROLE[role]);
     cp_bind_integer(s, 3, rows->replication_id);
     cp_bind_text(s, 4, crash_type(crash));
-    bind_vehicle_state(s, vehicle);
-    cp_bind_text(s, 21, cp_validity_text(vehicle->outside, validity));
-    bind_severity(s, vehicle);
+    cp_bind_crash_vehicle(s, vehicle, validity);
     return cp_statement_run(s, error);
 }
 
@@ -177,7 +190,7 @@ static cp_status write_pulse(cp_statement *s, const cp_result_rows *rows, size_t
     const cp_crash_vehicle_row *vehicle = &rows->crash[number].vehicle[role];
     if (vehicle->pulse == NULL)
         return CP_OK;
-    cp_bind_integer(s, 1, rows->replication_id * CRASHES_MAX + (int64_t)number);
+    cp_bind_integer(s, 1, rows->replication_id * CP_CRASHES_MAX + (int64_t)number);
     cp_bind_text(s, 2, ROLE[role]);
     cp_bind_integer(s, 3, CP_PULSE_CODEC);
     cp_bind_real(s, 4, vehicle->sample_interval_s);
@@ -189,9 +202,9 @@ static cp_status write_pulse(cp_statement *s, const cp_result_rows *rows, size_t
 static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_error *error)
 {
     cp_statement crash = {0}, vehicle = {0}, pulse = {0};
-    if (rows->crash_count > CRASHES_MAX)
+    if (rows->crash_count > CP_CRASHES_MAX)
         return cp_fail(error, CP_STORE_FAILED, "replication %lld has more than %d crashes",
-                       (long long)rows->replication_id, CRASHES_MAX);
+                       (long long)rows->replication_id, CP_CRASHES_MAX);
     cp_status status = cp_statement_prepare(
         store, "writing a crash",
         "INSERT INTO crash VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, "
@@ -323,6 +336,9 @@ cp_status cp_result_rows_commit(cp_store *store, const cp_result_rows *rows, cp_
         status = write_contacts(store, rows, error);
     if (status == CP_OK)
         status = write_sumo_collisions(store, rows, error);
+    if (status == CP_OK && rows->counterfactual != NULL)
+        status =
+            cp_counterfactual_rows_write(store, rows->replication_id, rows->counterfactual, error);
     if (status == CP_OK)
         status = finish_replication(store, rows, error);
     if (status == CP_OK)

@@ -58,6 +58,8 @@ typedef struct cp_sumo_collision_row {
     const char *found_as; /* static text */
 } cp_sumo_collision_row;
 
+struct cp_counterfactual_rows;
+
 /* Zero-initialise, add, commit, destroy. */
 typedef struct cp_result_rows {
     int64_t replication_id;
@@ -76,6 +78,7 @@ typedef struct cp_result_rows {
     size_t contact_count;
     cp_sumo_collision_row *sumo_collision;
     size_t sumo_collision_count;
+    struct cp_counterfactual_rows *counterfactual; /* owned; NULL in other designs */
 } cp_result_rows;
 
 /* Append a row, all zero, for the caller to fill; NULL when memory is gone. Earlier rows may move.
@@ -84,6 +87,8 @@ cp_crash_row *cp_result_rows_add_crash(cp_result_rows *rows);
 cp_contact_row *cp_result_rows_add_contact(cp_result_rows *rows);
 cp_sumo_collision_row *cp_result_rows_add_sumo_collision(cp_result_rows *rows);
 void cp_result_rows_destroy(cp_result_rows *rows);
+/* What a crash row owns; zeroed afterwards. */
+void cp_crash_row_destroy(cp_crash_row *crash);
 
 /* Write everything and the status done in one transaction. Errors: CP_RUN_FAILED when the claim was
  * taken away meanwhile; CP_STORE_FAILED, CP_BUSY. */

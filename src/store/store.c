@@ -23,9 +23,10 @@ struct cp_store {
 
 // The files of db/schema and db/views.sql, embedded at build time.
 extern const unsigned char cp_schema_001[];
+extern const unsigned char cp_schema_002[];
 extern const unsigned char cp_views[];
 
-static const unsigned char *const MIGRATION[CP_STORE_VERSION] = {cp_schema_001};
+static const unsigned char *const MIGRATION[CP_STORE_VERSION] = {cp_schema_001, cp_schema_002};
 
 sqlite3 *cp_store_sqlite(cp_store *store)
 {

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STORE_CRASH_BINDING_H
+#define STORE_CRASH_BINDING_H
+
+#include "crash/validity.h"
+#include "store/result_rows.h"
+#include "store/store_sqlite.h"
+
+/* What crash_vehicle and counterfactual_vehicle have in common; for the files of this folder. */
+
+#define CP_CRASHES_MAX (1 << 20) /* per replication: room in the row id */
+
+/* Parameters 5 to 37: frontal, the columns from sumo_id to contact_side, validity, severity. The
+ * text of validity is borrowed until the statement has run. */
+void cp_bind_crash_vehicle(cp_statement *statement, const cp_crash_vehicle_row *vehicle,
+                           char validity[CP_VALIDITY_TEXT_SIZE]);
+
+#endif

@@ -30,7 +30,7 @@ const char *cp_interval_status_text(cp_interval_status status)
 
 cp_resampling cp_resampling_default(void)
 {
-    return (cp_resampling){.repetitions = 2000, .seed = 1, .level_1 = 0.95};
+    return (cp_resampling){.repetitions = 2000, .seed = 1, .level_1 = 0.95, .expanded = true};
 }
 
 static void strata_destroy(strata *s)
@@ -80,21 +80,64 @@ static void draw(const strata *s, cp_rng_key key, unsigned *weight)
     }
 }
 
-/* Everything one interval needs; group 1 shares group 0's weights when paired. */
+/* Everything the intervals need; group 1 shares group 0's weights when paired. */
 typedef struct plan {
     const cp_resampling *resampling;
-    cp_statistic statistic;
+    cp_statistics statistics;
+    size_t count; /* statistics */
     const void *context;
     strata group[2];
     unsigned *weight[2];
     size_t group_count; /* groups that are drawn of their own */
+    double *estimate;   /* of each statistic */
+    double *resampled;  /* repetitions of the first statistic, then of the next */
+    double *left_out;   /* of each statistic: values without cluster 0, 1, ... of all groups */
+    double *value;      /* what one evaluation gives */
 } plan;
 
-static double evaluate(const plan *p)
+static void plan_destroy(plan *p)
+{
+    for (size_t g = 0; g < 2; g++) {
+        strata_destroy(&p->group[g]);
+        free(p->weight[g]);
+    }
+    free(p->estimate);
+    free(p->resampled);
+    free(p->left_out);
+    free(p->value);
+}
+
+static cp_status plan_create(const cp_resampling *resampling, cp_statistics statistics,
+                             size_t count, const void *context, plan *p, cp_error *error)
+{
+    const size_t *clusters = resampling->cluster_count;
+    *p = (plan){.resampling = resampling,
+                .statistics = statistics,
+                .count = count,
+                .context = context,
+                .group_count = clusters[1] && !resampling->paired ? 2 : 1};
+    p->estimate = calloc(count, sizeof *p->estimate);
+    p->value = calloc(count, sizeof *p->value);
+    p->resampled = calloc(count * (resampling->repetitions + 1), sizeof *p->resampled);
+    p->left_out = calloc(count * (clusters[0] + clusters[1] + 1), sizeof *p->left_out);
+    for (size_t g = 0; g < 2; g++)
+        p->weight[g] = calloc(clusters[g] + 1, sizeof *p->weight[g]);
+    if (!p->estimate || !p->value || !p->resampled || !p->left_out || !p->weight[0] ||
+        !p->weight[1])
+        return cp_fail_memory(error, "bootstrap");
+    for (size_t g = 0; g < 2; g++) {
+        cp_status status = strata_create(clusters[g], resampling->stratum[g], &p->group[g], error);
+        if (status != CP_OK)
+            return status;
+    }
+    return CP_OK;
+}
+
+static void evaluate(plan *p, double *value)
 {
     const cp_resampling *r = p->resampling;
     const unsigned *b = r->paired ? p->weight[0] : r->cluster_count[1] ? p->weight[1] : NULL;
-    return p->statistic(p->weight[0], b, p->context);
+    p->statistics(p->weight[0], b, p->context, value);
 }
 
 static void weights_to_one(plan *p)
@@ -104,21 +147,49 @@ static void weights_to_one(plan *p)
             p->weight[g][k] = 1;
 }
 
-// Acceleration from the jackknife over clusters, strata weighted as in Davison and Hinkley 1997,
-// eq. 5.24: sum of l^3/n^3 over 6 (sum of l^2/n^2)^1.5 with l = (n - 1)(mean - value left out).
-static double acceleration(plan *p, double *left_out)
+// Every statistic with each cluster left out in turn, in the order of the strata's places.
+static void jackknife(plan *p)
 {
+    size_t clusters = p->resampling->cluster_count[0] + p->resampling->cluster_count[1];
+    size_t before = 0;
+    weights_to_one(p);
+    for (size_t g = 0; g < p->group_count; g++) {
+        for (size_t place = 0; place < p->group[g].count; place++) {
+            p->weight[g][p->group[g].member[place]] = 0;
+            evaluate(p, p->value);
+            p->weight[g][p->group[g].member[place]] = 1;
+            for (size_t s = 0; s < p->count; s++)
+                p->left_out[s * clusters + before + place] = p->value[s];
+        }
+        before += p->group[g].count;
+    }
+}
+
+// Repetition r of group g has its own key, so neither order nor number of groups matters.
+static void resample(plan *p)
+{
+    cp_rng_key seed = cp_rng_key_text(cp_rng_key_seed(p->resampling->seed), "bootstrap");
+    for (size_t r = 0; r < p->resampling->repetitions; r++) {
+        for (size_t g = 0; g < p->group_count; g++)
+            draw(&p->group[g], cp_rng_key_number(cp_rng_key_number(seed, r), g), p->weight[g]);
+        evaluate(p, p->value);
+        for (size_t s = 0; s < p->count; s++)
+            p->resampled[s * p->resampling->repetitions + r] = p->value[s];
+    }
+}
+
+// Acceleration of a statistic from the jackknife, strata weighted as in Davison and Hinkley 1997,
+// eq. 5.24: sum of l^3/n^3 over 6 (sum of l^2/n^2)^1.5 with l = (n - 1)(mean - value left out).
+static double acceleration(const plan *p, size_t statistic)
+{
+    size_t clusters = p->resampling->cluster_count[0] + p->resampling->cluster_count[1];
+    const double *left_out = p->left_out + statistic * clusters;
     double squares = 0.0, cubes = 0.0;
     for (size_t g = 0; g < p->group_count; g++) {
         const strata *s = &p->group[g];
         for (size_t place = 0; place < s->count; place++) {
-            weights_to_one(p);
-            p->weight[g][s->member[place]] = 0;
-            left_out[place] = evaluate(p);
             if (!isfinite(left_out[place]))
                 return 0.0; // an open or missing value has no influence to measure
-        }
-        for (size_t place = 0; place < s->count; place++) {
             double mean = 0.0, n = (double)s->size[place];
             for (size_t other = 0; other < s->size[place]; other++)
                 mean += left_out[s->first[place] + other] / n;
@@ -126,6 +197,7 @@ static double acceleration(plan *p, double *left_out)
             squares += influence * influence;
             cubes += influence * influence * influence;
         }
+        left_out += s->count;
     }
     return squares > 0.0 ? cubes / (6.0 * pow(squares, 1.5)) : 0.0;
 }
@@ -141,81 +213,133 @@ static double bound(const double *sorted, size_t count, double alpha)
     return sorted[(size_t)(rank + 0.5) - 1];
 }
 
-static cp_interval bca(plan *p, double *resampled, size_t count, double *left_out, double estimate)
+static double degrees_of_freedom(const strata *s)
 {
+    size_t count = 0;
+    for (size_t place = 0; place < s->count; place++)
+        count += s->first[place] == place;
+    return (double)(s->count - count);
+}
+
+// How many standard errors the interval reaches to either side: the normal quantile, for few
+// clusters that of t and the factor by which resampled variances are too small.
+static double reach(const plan *p)
+{
+    double tail = 0.5 * (1.0 + p->resampling->level_1);
+    if (!p->resampling->expanded)
+        return gsl_cdf_ugaussian_Pinv(tail);
+    double fewest = INFINITY, freedom = INFINITY;
+    for (size_t g = 0; g < p->group_count; g++) {
+        double own = degrees_of_freedom(&p->group[g]);
+        if (own < freedom) {
+            fewest = (double)p->group[g].count;
+            freedom = own;
+        }
+    }
+    return freedom >= 1.0 ? sqrt(fewest / freedom) * gsl_cdf_tdist_Pinv(tail, freedom) : INFINITY;
+}
+
+// BCa's bend of a normal quantile; past its pole all of the resamples lie on one side.
+static double bent(double z0, double z, double a)
+{
+    double scale = 1.0 - a * z;
+    return scale > 0.0 ? z0 + z / scale : z * INFINITY;
+}
+
+static cp_interval bca(const plan *p, size_t statistic)
+{
+    const cp_interval undefined = {CP_INTERVAL_UNDEFINED, NAN, NAN};
+    double estimate = p->estimate[statistic];
+    double *resampled = p->resampled + statistic * p->resampling->repetitions;
+    size_t count = 0;
+    for (size_t r = 0; r < p->resampling->repetitions; r++)
+        if (!isnan(resampled[r]))
+            resampled[count++] = resampled[r];
+    if (!isfinite(estimate) || count == 0 ||
+        (double)count < 0.95 * (double)p->resampling->repetitions)
+        return undefined;
+
     // Bias correction: where the estimate stands among the resamples, ties counted half.
     double below = 0.0;
     for (size_t k = 0; k < count; k++)
         below += resampled[k] < estimate ? 1.0 : resampled[k] == estimate ? 0.5 : 0.0;
     double share = below / (double)count;
     if (!(share > 0.0 && share < 1.0))
-        return (cp_interval){CP_INTERVAL_UNDEFINED, NAN, NAN};
-    double z0 = gsl_cdf_ugaussian_Pinv(share);
-    double a = acceleration(p, left_out);
+        return undefined;
+    double z0 = gsl_cdf_ugaussian_Pinv(share), a = acceleration(p, statistic), z = reach(p);
 
     gsl_sort(resampled, 1, count);
-    double z = gsl_cdf_ugaussian_Pinv(0.5 * (1.0 + p->resampling->level_1));
-    double low = z0 + (z0 - z) / (1.0 - a * (z0 - z));
-    double high = z0 + (z0 + z) / (1.0 - a * (z0 + z));
-    return (cp_interval){CP_INTERVAL_VALUE, bound(resampled, count, gsl_cdf_ugaussian_P(low)),
-                         bound(resampled, count, gsl_cdf_ugaussian_P(high))};
+    double low = gsl_cdf_ugaussian_P(bent(z0, z0 - z, a));
+    double high = gsl_cdf_ugaussian_P(bent(z0, z0 + z, a));
+    return (cp_interval){CP_INTERVAL_VALUE, bound(resampled, count, low),
+                         bound(resampled, count, high)};
 }
 
-static cp_interval resample(plan *p, double *resampled, double *left_out)
+cp_status cp_bootstrap_many(const cp_resampling *resampling, cp_statistics statistics, size_t count,
+                            const void *context, cp_interval *interval, cp_error *error)
 {
-    const cp_interval undefined = {CP_INTERVAL_UNDEFINED, NAN, NAN};
-    weights_to_one(p);
-    double estimate = evaluate(p);
-    if (!isfinite(estimate))
-        return undefined;
+    const size_t *clusters = resampling->cluster_count;
+    for (size_t s = 0; s < count; s++)
+        interval[s] = (cp_interval){CP_INTERVAL_TOO_FEW_REPLICATIONS, NAN, NAN};
+    if (clusters[0] < CP_BOOTSTRAP_CLUSTERS_MIN ||
+        (clusters[1] > 0 && clusters[1] < CP_BOOTSTRAP_CLUSTERS_MIN))
+        return CP_OK;
 
-    // Repetition r of group g has its own key, so neither order nor number of groups matters.
-    size_t count = 0;
-    cp_rng_key seed = cp_rng_key_text(cp_rng_key_seed(p->resampling->seed), "bootstrap");
-    for (size_t r = 0; r < p->resampling->repetitions; r++) {
-        for (size_t g = 0; g < p->group_count; g++)
-            draw(&p->group[g], cp_rng_key_number(cp_rng_key_number(seed, r), g), p->weight[g]);
-        double value = evaluate(p);
-        if (!isnan(value))
-            resampled[count++] = value;
+    plan p;
+    cp_status status = plan_create(resampling, statistics, count, context, &p, error);
+    if (status == CP_OK) {
+        weights_to_one(&p);
+        evaluate(&p, p.estimate);
+        jackknife(&p);
+        resample(&p);
+        for (size_t s = 0; s < count; s++)
+            interval[s] = bca(&p, s);
     }
-    if (count == 0 || (double)count < 0.95 * (double)p->resampling->repetitions)
-        return undefined;
-    return bca(p, resampled, count, left_out, estimate);
+    plan_destroy(&p);
+    return status;
+}
+
+/* One statistic as a list of one. */
+typedef struct single {
+    cp_statistic statistic;
+    const void *context;
+} single;
+
+static void evaluate_single(const unsigned *weight_a, const unsigned *weight_b, const void *context,
+                            double *value)
+{
+    const single *one = context;
+    *value = one->statistic(weight_a, weight_b, one->context);
 }
 
 cp_status cp_bootstrap(const cp_resampling *resampling, cp_statistic statistic, const void *context,
                        cp_interval *interval, cp_error *error)
 {
-    const size_t *clusters = resampling->cluster_count;
-    *interval = (cp_interval){CP_INTERVAL_TOO_FEW_REPLICATIONS, NAN, NAN};
-    if (clusters[0] < CP_BOOTSTRAP_CLUSTERS_MIN ||
-        (clusters[1] > 0 && clusters[1] < CP_BOOTSTRAP_CLUSTERS_MIN))
-        return CP_OK;
+    const single one = {statistic, context};
+    return cp_bootstrap_many(resampling, evaluate_single, 1, &one, interval, error);
+}
 
-    plan p = {.resampling = resampling, .statistic = statistic, .context = context};
-    p.group_count = clusters[1] && !resampling->paired ? 2 : 1;
-    cp_status status = CP_OK;
-    size_t most = clusters[0] > clusters[1] ? clusters[0] : clusters[1];
-    double *resampled = calloc(resampling->repetitions + 1, sizeof *resampled);
-    double *left_out = calloc(most + 1, sizeof *left_out);
-    for (size_t g = 0; g < 2; g++)
-        p.weight[g] = calloc(clusters[g] + 1, sizeof *p.weight[g]);
-    if (!resampled || !left_out || !p.weight[0] || !p.weight[1]) {
-        status = cp_fail_memory(error, "bootstrap");
-        goto done;
+cp_status cp_bootstrap_draws(const cp_resampling *resampling, cp_draw draw_done, void *context,
+                             double *freedom, cp_error *error)
+{
+    size_t clusters = resampling->cluster_count[0];
+    strata s;
+    cp_status status = strata_create(clusters, resampling->stratum[0], &s, error);
+    if (status != CP_OK)
+        return status;
+    unsigned *weight = calloc(clusters + 1, sizeof *weight);
+    if (!weight) {
+        strata_destroy(&s);
+        return cp_fail_memory(error, "bootstrap");
     }
-    for (size_t g = 0; g < 2 && status == CP_OK; g++)
-        status = strata_create(clusters[g], resampling->stratum[g], &p.group[g], error);
-    if (status == CP_OK)
-        *interval = resample(&p, resampled, left_out);
-
-done:
-    strata_destroy(&p.group[0]);
-    strata_destroy(&p.group[1]);
-    free(p.weight[0]);
-    free(p.weight[1]);
-    free(left_out);
-    free(resampled);
-    return status;
+    cp_rng_key seed = cp_rng_key_text(cp_rng_key_seed(resampling->seed), "bootstrap");
+    for (size_t r = 0; r < resampling->repetitions; r++) {
+        draw(&s, cp_rng_key_number(cp_rng_key_number(seed, r), 0), weight);
+        draw_done(context, weight);
+    }
+    if (freedom)
+        *freedom = degrees_of_freedom(&s);
+    free(weight);
+    strata_destroy(&s);
+    return CP_OK;
 }

@@ -9,7 +9,10 @@
 #include <stdint.h>
 
 /* Confidence intervals by resampling whole clusters (replications): values of one replication are
- * not independent. Bias-corrected and accelerated (Efron 1987). */
+ * not independent. Bias-corrected and accelerated (BCa, Efron 1987), and expanded for few clusters
+ * (Hesterberg 2015, "What teachers should know about the bootstrap", section 5.2): in place of the
+ * normal quantile z stands sqrt(n / f) t(f), with n clusters of the smaller group and f = n minus
+ * its strata degrees of freedom. How well they cover: tests/stats/coverage.md. */
 
 /* Fewer clusters than this in either group give no interval: its coverage cannot be trusted. */
 #define CP_BOOTSTRAP_CLUSTERS_MIN 20
@@ -45,6 +48,7 @@ typedef struct cp_resampling {
     size_t repetitions;       /* default 2000 */
     uint64_t seed;
     double level_1; /* of confidence, default 0.95 */
+    bool expanded;  /* for few clusters, default true; false: BCa as published */
 } cp_resampling;
 
 /* All fields at their defaults, no clusters, seed 1. */
@@ -55,6 +59,25 @@ cp_resampling cp_resampling_default(void);
  * for one group. */
 typedef double (*cp_statistic)(const unsigned *weight_a, const unsigned *weight_b,
                                const void *context);
+
+/* Several statistics of one resample at once, written to value[0 ... count - 1]; like cp_statistic
+ * each. */
+typedef void (*cp_statistics)(const unsigned *weight_a, const unsigned *weight_b,
+                              const void *context, double *value);
+
+/* The intervals of count >= 1 statistics from the same resamples. Each is the same as from
+ * cp_bootstrap. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_bootstrap_many(const cp_resampling *resampling, cp_statistics statistics,
+                                          size_t count, const void *context, cp_interval *interval,
+                                          cp_error *error);
+
+/* What to do with one resample of the first group. */
+typedef void (*cp_draw)(void *context, const unsigned *weight);
+
+/* The resamples alone, one call of draw each: those of the intervals above for the same resampling.
+ * freedom (may be NULL): clusters minus strata of the first group. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_bootstrap_draws(const cp_resampling *resampling, cp_draw draw,
+                                           void *context, double *freedom, cp_error *error);
 
 /* The interval of a statistic. The same input gives the same bits. Undefined when the statistic
  * itself, or more than one resample in twenty, does not exist, or when all resamples agree on one

@@ -2,74 +2,12 @@
 #include "stats/contrast.h"
 
 #include "stats/permutation.h"
+#include "stats/pooled.h"
 
 #include <gsl/gsl_sort.h>
 
 #include <math.h>
 #include <stdlib.h>
-
-/* Both samples in one ascending order; clusters numbered through as in cp_permutation. */
-typedef struct pooled {
-    size_t count;
-    double *value;
-    size_t *cluster;
-} pooled;
-
-static void pooled_destroy(pooled *p)
-{
-    free(p->value);
-    free(p->cluster);
-    *p = (pooled){0};
-}
-
-static cp_status pooled_create(const cp_sample *a, const cp_sample *b, pooled *p, cp_error *error)
-{
-    *p = (pooled){.count = a->count + b->count};
-    p->value = calloc(p->count + 1, sizeof *p->value);
-    p->cluster = calloc(p->count + 1, sizeof *p->cluster);
-    if (!p->value || !p->cluster) {
-        pooled_destroy(p);
-        return cp_fail_memory(error, "a permutation test");
-    }
-    // Merge the two sorted samples.
-    for (size_t i = 0, j = 0, k = 0; k < p->count; k++) {
-        bool from_a = j == b->count || (i < a->count && a->value[i] <= b->value[j]);
-        p->value[k] = from_a ? a->value[i] : b->value[j];
-        p->cluster[k] = from_a ? a->cluster[i++] : a->cluster_count + b->cluster[j++];
-    }
-    return CP_OK;
-}
-
-/* The two test statistics of one labelling; NAN when a group has no observation. */
-typedef struct distances {
-    double u;     /* Mann-Whitney U of group 1 */
-    double shift; /* |U / (n0 n1) - 1/2|: how far from no difference */
-    double ks;
-} distances;
-
-static distances distances_of(const pooled *p, const unsigned char *label)
-{
-    double total[2] = {0.0, 0.0};
-    for (size_t k = 0; k < p->count; k++)
-        total[label[p->cluster[k]]]++;
-    if (total[0] <= 0.0 || total[1] <= 0.0)
-        return (distances){NAN, NAN, NAN};
-
-    // Walk up the values; ties move together, a tie with the other group counts half.
-    distances d = {0.0, 0.0, 0.0};
-    double passed[2] = {0.0, 0.0};
-    for (size_t begin = 0, end; begin < p->count; begin = end) {
-        double tied[2] = {0.0, 0.0};
-        for (end = begin; end < p->count && p->value[end] == p->value[begin]; end++)
-            tied[label[p->cluster[end]]]++;
-        d.u += tied[1] * (passed[0] + 0.5 * tied[0]);
-        passed[0] += tied[0];
-        passed[1] += tied[1];
-        d.ks = fmax(d.ks, fabs(passed[0] / total[0] - passed[1] / total[1]));
-    }
-    d.shift = fabs(d.u / (total[0] * total[1]) - 0.5);
-    return d;
-}
 
 // At least as extreme, up to rounding of sums taken in another order.
 static bool as_extreme(double permuted, double observed)
@@ -79,71 +17,40 @@ static bool as_extreme(double permuted, double observed)
     return permuted >= observed - 1e-12 * fmax(1.0, fabs(observed));
 }
 
-static cp_status test_samples(const cp_sample *a, const cp_sample *b,
-                              const cp_resampling *resampling, size_t permutations,
-                              cp_contrast *contrast, cp_error *error)
+static cp_status test_samples(const cp_pooled *p, const cp_resampling *resampling,
+                              size_t permutations, cp_contrast *contrast, cp_error *error)
 {
-    pooled p = {0};
-    cp_permutation permutation = {0};
-    cp_status status = pooled_create(a, b, &p, error);
-    if (status == CP_OK)
-        status = cp_permutation_create(resampling, &permutation, error);
+    cp_permutation permutation;
+    cp_status status = cp_permutation_create(resampling, &permutation, error);
     if (status != CP_OK)
-        goto done;
-    distances observed = distances_of(&p, permutation.label);
+        return status;
+    cp_pooled_ranks observed = cp_pooled_rank(p, permutation.label);
     contrast->mann_whitney = (cp_permutation_test){observed.u, NAN};
     contrast->kolmogorov_smirnov = (cp_permutation_test){observed.ks, NAN};
-    if (isnan(observed.u) || permutations == 0)
-        goto done;
 
     // Labellings that leave a group empty say nothing and are left out.
     double valid = 0.0, u_extreme = 0.0, ks_extreme = 0.0;
-    for (size_t number = 1; number <= permutations; number++) {
+    for (size_t number = 1; !isnan(observed.u) && number <= permutations; number++) {
         cp_permutation_set(&permutation, number);
-        distances d = distances_of(&p, permutation.label);
-        if (isnan(d.u))
+        cp_pooled_ranks permuted = cp_pooled_rank(p, permutation.label);
+        if (isnan(permuted.u))
             continue;
         valid++;
-        u_extreme += as_extreme(d.shift, observed.shift);
-        ks_extreme += as_extreme(d.ks, observed.ks);
+        u_extreme += as_extreme(permuted.shift, observed.shift);
+        ks_extreme += as_extreme(permuted.ks, observed.ks);
     }
-    contrast->mann_whitney.p = (1.0 + u_extreme) / (1.0 + valid);
-    contrast->kolmogorov_smirnov.p = (1.0 + ks_extreme) / (1.0 + valid);
-
-done:
+    if (!isnan(observed.u) && permutations > 0) {
+        contrast->mann_whitney.p = (1.0 + u_extreme) / (1.0 + valid);
+        contrast->kolmogorov_smirnov.p = (1.0 + ks_extreme) / (1.0 + valid);
+    }
     cp_permutation_destroy(&permutation);
-    pooled_destroy(&p);
-    return status;
+    return CP_OK;
 }
 
-/* What the bootstrap statistics need: two samples, and which quantile. */
-typedef struct pair {
-    const cp_sample *a;
-    const cp_sample *b;
-    double p;
-} pair;
-
-static double mean_statistic(const unsigned *weight_a, const unsigned *weight_b,
-                             const void *context)
+static void differences(const unsigned *weight_a, const unsigned *weight_b, const void *context,
+                        double *value)
 {
-    const pair *both = context;
-    return cp_sample_mean(both->b, weight_b) - cp_sample_mean(both->a, weight_a);
-}
-
-static double quantile_statistic(const unsigned *weight_a, const unsigned *weight_b,
-                                 const void *context)
-{
-    // Two censored quantiles: -INFINITY - -INFINITY is NAN, the difference does not exist.
-    const pair *both = context;
-    return cp_sample_quantile(both->b, weight_b, both->p) -
-           cp_sample_quantile(both->a, weight_a, both->p);
-}
-
-static double delta_statistic(const unsigned *weight_a, const unsigned *weight_b,
-                              const void *context)
-{
-    const pair *both = context;
-    return cp_sample_cliffs_delta(both->a, weight_a, both->b, weight_b);
+    cp_pooled_differences(context, weight_a, weight_b, value);
 }
 
 cp_status cp_contrast_samples(const cp_sample *a, const cp_sample *b,
@@ -159,24 +66,20 @@ cp_status cp_contrast_samples(const cp_sample *a, const cp_sample *b,
             cp_estimate_difference(cp_describe_quantile(a, 0.9), cp_describe_quantile(b, 0.9)),
         .cliffs_delta = cp_sample_cliffs_delta(a, NULL, b, NULL),
     };
-    const struct {
-        cp_statistic statistic;
-        double p;
-        cp_interval *interval;
-    } intervals[] = {
-        {mean_statistic, 0.0, &contrast->mean_interval},
-        {quantile_statistic, 0.5, &contrast->median_interval},
-        {quantile_statistic, 0.9, &contrast->p90_interval},
-        {delta_statistic, 0.0, &contrast->cliffs_delta_interval},
-    };
-    for (size_t k = 0; k < sizeof intervals / sizeof *intervals; k++) {
-        pair both = {a, b, intervals[k].p};
-        cp_status status =
-            cp_bootstrap(resampling, intervals[k].statistic, &both, intervals[k].interval, error);
-        if (status != CP_OK)
-            return status;
+    cp_pooled p;
+    cp_interval interval[CP_POOLED_COUNT];
+    cp_status status = cp_pooled_create(a, b, &p, error);
+    if (status == CP_OK)
+        status = cp_bootstrap_many(resampling, differences, CP_POOLED_COUNT, &p, interval, error);
+    if (status == CP_OK) {
+        contrast->mean_interval = interval[CP_POOLED_MEAN];
+        contrast->median_interval = interval[CP_POOLED_MEDIAN];
+        contrast->p90_interval = interval[CP_POOLED_P90];
+        contrast->cliffs_delta_interval = interval[CP_POOLED_CLIFFS_DELTA];
+        status = test_samples(&p, resampling, permutations, contrast, error);
     }
-    return test_samples(a, b, resampling, permutations, contrast, error);
+    cp_pooled_destroy(&p);
+    return status;
 }
 
 // Log of the rate ratio of group 1 over group 0 under a labelling; NAN without any exposure.

@@ -75,8 +75,8 @@ static void same_seed_same_bits_other_seed_other_bits(void **state)
     cp_sample_destroy(&sample);
 }
 
-// For equal clusters the mean's standard error is that of the cluster means: width = 2 * 1.96 se
-// (n - 1 over n of it, as the bootstrap has it).
+// For equal clusters the mean's standard error is that of the cluster means: width = 2 z se, with
+// (n - 1 over n of it, as the bootstrap has it) z = 1.95996, expanded sqrt(n / (n - 1)) t(n - 1).
 static void width_is_that_of_the_cluster_means(void **state)
 {
     (void)state;
@@ -94,7 +94,11 @@ static void width_is_that_of_the_cluster_means(void **state)
     resampling.repetitions = 10000;
     cp_interval interval = interval_of(&sample, resampling);
     assert_true(interval.low < mean && mean < interval.high);
-    assert_near((interval.high - interval.low) / (2.0 * 1.96 * se), 1.0, 0.06);
+    double expanded = sqrt(30.0 / 29.0) * 2.045229642;
+    assert_near((interval.high - interval.low) / (2.0 * expanded * se), 1.0, 0.04);
+    resampling.expanded = false;
+    interval = interval_of(&sample, resampling);
+    assert_near((interval.high - interval.low) / (2.0 * 1.95996 * se), 1.0, 0.04);
     cp_sample_destroy(&sample);
 }
 
@@ -179,6 +183,7 @@ static void bca_agrees_with_the_published_example(void **state)
     resampling.cluster_count[0] = COUNT;
     resampling.repetitions = 20000;
     resampling.level_1 = 0.9;
+    resampling.expanded = false;
     cp_interval interval;
     assert_int_equal(cp_bootstrap(&resampling, variance_of_a, &sample, &interval, &error), CP_OK);
     assert_near(interval.low, 115.8, 2.5);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/args.h"
 #include "cli/commands.h"
+#include "cli/crash_again.h"
 #include "cli/crash_output.h"
 #include "cli/crash_samples.h"
 #include "core/units.h"
@@ -25,6 +26,9 @@ typedef struct arguments {
     const char *overlay_opponent_path; /* NULL: the same opponent; "barrier" */
     long samples;                      /* 0: none */
     long seed;                         /* -1: not given */
+    const char *from_path;             /* database of a study; NULL: none */
+    long crash_id;                     /* -1: not given */
+    bool described;                    /* an option says how the cars meet */
     cp_format format;
 } arguments;
 
@@ -40,7 +44,9 @@ enum {
     OVERLAY_VEHICLE,
     OVERLAY_AGAINST,
     SAMPLES,
-    SEED
+    SEED,
+    FROM,
+    CRASH
 };
 
 static const struct argp_option OPTIONS[] = {
@@ -69,11 +75,33 @@ static const struct argp_option OPTIONS[] = {
      "5 to 95 % intervals",
      0},
     {"seed", SEED, "S", 0, "seed of the samples (default 1)", 0},
+    {"from", FROM, "DB", 0,
+     "simulate a crash of this study's database again, from the database alone", 0},
+    {"crash", CRASH, "ID", 0, "which one: crash.id", 0},
     {0},
 };
 
+// A stored crash brings all with it.
+static void check_stored(const arguments *a, struct argp_state *state)
+{
+    if (a->crash_id < 0)
+        argp_error(state, "which crash? --crash ID is missing");
+    if (!a->from_path)
+        argp_error(state, "--crash is about a database: --from DB is missing");
+    if (a->vehicle_path || a->opponent_path || a->described || a->samples > 0 ||
+        a->overlay_vehicle_path || a->overlay_opponent_path)
+        argp_error(state, "--from takes vehicles, speeds and all else from the database; only "
+                          "--pulse, --raw, --animate and --format go with it");
+    if (a->raw && !a->pulse_path)
+        argp_error(state, "--raw is about the pulse file: --pulse FILE.csv is missing");
+}
+
 static void check(const arguments *a, struct argp_state *state)
 {
+    if (a->from_path || a->crash_id >= 0) {
+        check_stored(a, state);
+        return;
+    }
     if (!a->vehicle_path)
         argp_error(state, "which vehicle? VEHICLE.yaml is missing");
     if (isnan(a->speed_km_h))
@@ -113,6 +141,12 @@ static error_t parse_output(int key, char *argument, struct argp_state *state)
     case SAMPLES:
         a->samples = cp_args_integer(state, "--samples", argument, 2, 1000000);
         return 0;
+    case FROM:
+        a->from_path = argument;
+        return 0;
+    case CRASH:
+        a->crash_id = cp_args_integer(state, "--crash", argument, 0, LONG_MAX);
+        return 0;
     case SEED:
         a->seed = cp_args_integer(state, "--seed", argument, 0, LONG_MAX);
         return 0;
@@ -124,6 +158,7 @@ static error_t parse_output(int key, char *argument, struct argp_state *state)
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     arguments *a = state->input;
+    a->described |= key == 's' || (key >= OPPONENT_SPEED && key <= DURATION);
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &a->format;
@@ -166,7 +201,7 @@ static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}}
 static const struct argp ARGP = {
     .options = OPTIONS,
     .parser = parse,
-    .args_doc = "VEHICLE.yaml --speed KMH",
+    .args_doc = "VEHICLE.yaml --speed KMH\n--from DB --crash ID",
     .doc =
         "Simulate one crash of the vehicle on the multibody surrogate, against a rigid barrier "
         "or another car, and print OLC, delta-v, peak and crush."
@@ -179,7 +214,8 @@ static const struct argp ARGP = {
         "  crashpulse crash car.yaml --speed 40 --offset 400 --angle 15 --format json\n"
         "  crashpulse crash car.yaml --against other.yaml --speed 50 --pulse pulse.csv\n"
         "  crashpulse crash a.yaml --speed 56 --animate a.html --overlay-against b.yaml\n"
-        "  crashpulse crash car.yaml --speed 50 --samples 1000 --seed 7\n",
+        "  crashpulse crash car.yaml --speed 50 --samples 1000 --seed 7\n"
+        "  crashpulse crash --from demo.db --crash 2305843009213693952 --animate again.html\n",
     .children = CHILDREN,
 };
 
@@ -274,26 +310,56 @@ static cp_status print_samples(const arguments *a, const cp_crash_run *nominal, 
     return status;
 }
 
+static cp_status simulate_again(const arguments *a, cp_error *error)
+{
+    cp_crash_again again = {0};
+    filmed_run filmed = {.film = cp_crash_film_default()};
+    cp_status status = cp_crash_again_simulate(
+        a->from_path, a->crash_id, a->animation_path ? &filmed.film : NULL, &again, error);
+    filmed.run = again.run;
+    if (status == CP_OK && a->pulse_path)
+        status = cp_crash_write_pulse(&again.run, a->raw, a->pulse_path, error);
+    if (status == CP_OK && a->animation_path)
+        status = animate(&filmed, NULL, a->animation_path, error);
+    if (status == CP_OK)
+        status = cp_crash_print(&again.run, a->format, stdout, error);
+    if (status == CP_OK)
+        status = cp_crash_again_conclude(&again, error);
+    cp_crash_film_destroy(&filmed.film);
+    cp_crash_result_destroy(&again.run.result);
+    return status;
+}
+
+static cp_status simulate_described(const arguments *a, cp_error *error)
+{
+    filmed_run filmed = {0};
+    cp_status status = film(a, a->vehicle_path, a->opponent_path, &filmed, error);
+    if (status == CP_OK && a->pulse_path)
+        status = cp_crash_write_pulse(&filmed.run, a->raw, a->pulse_path, error);
+    if (status == CP_OK && a->animation_path)
+        status = write_animation(a, &filmed, error);
+    if (status == CP_OK && a->samples > 0)
+        status = print_samples(a, &filmed.run, error);
+    else if (status == CP_OK)
+        status = cp_crash_print(&filmed.run, a->format, stdout, error);
+    cp_crash_film_destroy(&filmed.film);
+    cp_crash_result_destroy(&filmed.run.result);
+    return status;
+}
+
 cp_status cmd_crash(int argc, char **argv, cp_error *error)
 {
-    arguments a = {.speed_km_h = NAN, .opponent_speed_km_h = NAN, .duration_ms = 200.0, .seed = -1};
+    arguments a = {.speed_km_h = NAN,
+                   .opponent_speed_km_h = NAN,
+                   .duration_ms = 200.0,
+                   .seed = -1,
+                   .crash_id = -1};
     cp_args_parse(&ARGP, argc, argv, &a);
 
     cp_status status = cp_crash_library_begin(error);
     if (status != CP_OK)
         return status;
-    filmed_run filmed = {0};
-    status = film(&a, a.vehicle_path, a.opponent_path, &filmed, error);
-    if (status == CP_OK && a.pulse_path)
-        status = cp_crash_write_pulse(&filmed.run, a.raw, a.pulse_path, error);
-    if (status == CP_OK && a.animation_path)
-        status = write_animation(&a, &filmed, error);
-    if (status == CP_OK && a.samples > 0)
-        status = print_samples(&a, &filmed.run, error);
-    else if (status == CP_OK)
-        status = cp_crash_print(&filmed.run, a.format, stdout, error);
-    cp_crash_film_destroy(&filmed.film);
-    cp_crash_result_destroy(&filmed.run.result);
+    status = a.from_path ? simulate_again(&a, error) : simulate_described(&a, error);
     cp_crash_library_end();
     return status;
 }

@@ -17,6 +17,7 @@ static const command COMMAND[] = {
     {"compare", cmd_compare, "compare the variants of a study"},
     {"report", cmd_report, "write the comparison as one HTML file with figures"},
     {"sql", cmd_sql, "ask the database"},
+    {"check", cmd_check, "see whether a database is whole"},
     {"crash", cmd_crash, "simulate one crash, against a barrier or another car"},
     {"validate", cmd_validate, "hold a vehicle model against reference OLC values"},
     {"calibrate", cmd_calibrate, "fit a vehicle model to reference OLC values"},

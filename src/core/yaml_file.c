@@ -215,24 +215,32 @@ static cp_status load_structure(cp_yaml_file *file, const char *content, size_t 
                    report.message[0] != '\0' ? report.message : cyaml_strerror(outcome));
 }
 
-cp_status cp_yaml_load(const char *path, const cyaml_schema_value_t *schema, cp_yaml_file *file,
-                       cp_error *error)
+cp_status cp_yaml_parse(const char *name, const char *content, size_t size,
+                        const cyaml_schema_value_t *schema, cp_yaml_file *file, cp_error *error)
 {
-    *file = (cp_yaml_file){.schema = schema, .path = strdup(path)};
-    char *content = NULL;
-    size_t size = 0;
+    *file = (cp_yaml_file){.schema = schema, .path = strdup(name)};
     cp_status status = CP_OK;
     if (file->path == NULL)
-        status = cp_fail_memory(error, path);
-    if (status == CP_OK)
-        status = cp_file_read(path, &content, &size, error);
+        status = cp_fail_memory(error, name);
     if (status == CP_OK)
         status = load_structure(file, content, size, error);
     if (status == CP_OK && !walk_lines(file, content, size))
-        status = cp_fail(error, CP_BAD_INPUT, "%s: is nested too deeply", path);
-    free(content);
+        status = cp_fail(error, CP_BAD_INPUT, "%s: is nested too deeply", name);
     if (status != CP_OK)
         cp_yaml_close(file);
+    return status;
+}
+
+cp_status cp_yaml_load(const char *path, const cyaml_schema_value_t *schema, cp_yaml_file *file,
+                       cp_error *error)
+{
+    char *content = NULL;
+    size_t size = 0;
+    *file = (cp_yaml_file){0};
+    cp_status status = cp_file_read(path, &content, &size, error);
+    if (status == CP_OK)
+        status = cp_yaml_parse(path, content, size, schema, file, error);
+    free(content);
     return status;
 }
 

@@ -35,6 +35,10 @@ typedef struct cp_yaml_file {
  * "file:line: what". On failure the file is closed already. */
 CP_MUST_CHECK cp_status cp_yaml_load(const char *path, const cyaml_schema_value_t *schema,
                                      cp_yaml_file *file, cp_error *error);
+/* The same from memory; name stands for the path in messages. */
+CP_MUST_CHECK cp_status cp_yaml_parse(const char *name, const char *content, size_t size,
+                                      const cyaml_schema_value_t *schema, cp_yaml_file *file,
+                                      cp_error *error);
 void cp_yaml_close(cp_yaml_file *file);
 
 /* Line of a key path, or of its nearest parent that exists; 1 at worst. */

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "crash/vehicle_model.h"
 
+#include "core/file.h"
 #include "core/hash.h"
 #include "core/units.h"
 #include "core/yaml_file.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const cp_vehicle_parameter CP_VEHICLE_PARAMETER[] = {
@@ -209,10 +211,11 @@ static cp_status read_parameter(const cp_yaml_file *file, const yaml_parameter *
     return CP_OK;
 }
 
-cp_status cp_vehicle_model_load(const char *path, cp_vehicle_model *model, cp_error *error)
+cp_status cp_vehicle_model_parse(const char *name, const char *content, size_t size,
+                                 cp_vehicle_model *model, cp_error *error)
 {
     cp_yaml_file file = {0};
-    cp_status status = cp_yaml_load(path, &VEHICLE_VALUE, &file, error);
+    cp_status status = cp_yaml_parse(name, content, size, &VEHICLE_VALUE, &file, error);
     if (status != CP_OK)
         return status;
     const yaml_vehicle *vehicle = (const yaml_vehicle *)file.data;
@@ -232,12 +235,22 @@ cp_status cp_vehicle_model_load(const char *path, cp_vehicle_model *model, cp_er
     for (size_t row = 0; status == CP_OK && row < vehicle->parameters_count; row++)
         status = read_parameter(&file, &vehicle->parameters[row], row, given, model, error);
     cp_yaml_close(&file);
-    if (status == CP_OK)
-        status = cp_hash_file(path, model->hash, error);
     if (status != CP_OK)
         return status;
+    cp_hash_bytes(content, size, model->hash);
     status = cp_vehicle_model_validate(model, error);
-    return status == CP_OK ? CP_OK : cp_error_prefix(error, "%s: ", path);
+    return status == CP_OK ? CP_OK : cp_error_prefix(error, "%s: ", name);
+}
+
+cp_status cp_vehicle_model_load(const char *path, cp_vehicle_model *model, cp_error *error)
+{
+    char *content = NULL;
+    size_t size = 0;
+    cp_status status = cp_file_read(path, &content, &size, error);
+    if (status == CP_OK)
+        status = cp_vehicle_model_parse(path, content, size, model, error);
+    free(content);
+    return status;
 }
 
 // ---- validation ----------------------------------------------------------------------------

@@ -127,6 +127,9 @@ size_t cp_vehicle_parameter_index(const char *name);
  * with file, line and field. */
 CP_MUST_CHECK cp_status cp_vehicle_model_load(const char *path, cp_vehicle_model *model,
                                               cp_error *error);
+/* The same from memory; name stands for the path in messages. */
+CP_MUST_CHECK cp_status cp_vehicle_model_parse(const char *name, const char *content, size_t size,
+                                               cp_vehicle_model *model, cp_error *error);
 
 /* The largest time step the explicit force elements of the model stand: their fastest oscillation
  * turns 1.2 rad in it. element (may be NULL) receives what sets it, static text. */

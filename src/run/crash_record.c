@@ -3,7 +3,7 @@
 
 #include "core/log.h"
 #include "crash/crash_simulation.h"
-#include "store/pulse_codec.h"
+#include "pulse/pulse_codec.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -85,12 +85,25 @@ static cp_status simulate(const cp_vehicle_model *const models[2],
     return status;
 }
 
+// The database keeps no sign of zero; simulated is what it will give back.
+static void drop_sign_of_zero(cp_body_state *body)
+{
+    body->cog_m.x += 0.0;
+    body->cog_m.y += 0.0;
+    body->yaw_rad += 0.0;
+    body->velocity_m_s.x += 0.0;
+    body->velocity_m_s.y += 0.0;
+    body->yaw_rate_rad_s += 0.0;
+}
+
 cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *names,
                                const cp_fleet *fleet, cp_crash_row *row, cp_error *error)
 {
     const cp_vehicle_model *const models[2] = {cp_fleet_model(fleet, names->sumo_type[0]),
                                                cp_fleet_model(fleet, names->sumo_type[1])};
     cp_crash_configuration configuration = cp_impact_configuration(impact, models[0], models[1]);
+    for (int role = 0; role < 2; role++)
+        drop_sign_of_zero(&configuration.vehicle[role]);
     row->time_s = impact->time_s;
     row->contact_m = impact->contact_m;
     row->description = cp_impact_describe(impact, models[0], models[1]);

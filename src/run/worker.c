@@ -7,6 +7,7 @@
 #include "run/owner.h"
 #include "run/replication.h"
 #include "store/claim.h"
+#include "store/stored_crash.h"
 
 // Claim with a connection of its own: none stays open while the replication runs.
 static cp_status claim(const char *db_path, const cp_replication_row *replication, int *attempt,
@@ -43,7 +44,11 @@ static cp_status run_claimed(const cp_study *study, const cp_fleet *fleet,
     cp_status status = cp_crash_library_begin(error);
     if (status != CP_OK)
         return status;
-    status = cp_replication_run(study, fleet, replication, &results, error);
+    cp_crash_options options = cp_crash_options_default();
+    results.crash_options = cp_crash_options_json(&options);
+    status = results.crash_options != NULL
+                 ? cp_replication_run(study, fleet, replication, &results, error)
+                 : cp_fail_memory(error, "crash options");
     cp_crash_library_end();
     results.wall_time_s = cp_clock_s() - started_s;
     if (status == CP_OK)

@@ -3,8 +3,8 @@
 
 #include "core/hash.h"
 #include "crash/validity.h"
+#include "pulse/pulse_codec.h"
 #include "store/crash_binding.h"
-#include "store/pulse_codec.h"
 
 #include <math.h>
 #include <stdlib.h>

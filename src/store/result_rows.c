@@ -2,9 +2,9 @@
 #include "store/result_rows.h"
 
 #include "crash/validity.h"
+#include "pulse/pulse_codec.h"
 #include "store/counterfactual_rows.h"
 #include "store/crash_binding.h"
-#include "store/pulse_codec.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -86,6 +86,7 @@ void cp_result_rows_destroy(cp_result_rows *rows)
     free(rows->sumo_version);
     free(rows->sumo_command_line);
     free(rows->counters);
+    free(rows->crash_options);
     *rows = (cp_result_rows){0};
 }
 
@@ -307,7 +308,7 @@ static cp_status finish_replication(cp_store *store, const cp_result_rows *rows,
         store, "finishing a replication",
         "UPDATE replication SET status = 'done', crashpulse_version = ?2, sumo_version = ?3, "
         "sumo_command_line = ?4, simulated_s = ?5, vehicle_km = ?6, vehicle_h = ?7, departed = ?8, "
-        "counters = ?9 WHERE id = ?1 AND status = 'running'",
+        "counters = ?9, crash_options = ?10 WHERE id = ?1 AND status = 'running'",
         &s, error);
     cp_bind_integer(&s, 1, rows->replication_id);
     cp_bind_text(&s, 2, CRASHPULSE_VERSION);
@@ -318,6 +319,7 @@ static cp_status finish_replication(cp_store *store, const cp_result_rows *rows,
     cp_bind_real(&s, 7, rows->vehicle_h);
     cp_bind_integer(&s, 8, (int64_t)rows->departed);
     cp_bind_text(&s, 9, rows->counters);
+    cp_bind_text(&s, 10, rows->crash_options);
     if (status == CP_OK)
         status = cp_statement_run(&s, error);
     cp_statement_finish(&s);

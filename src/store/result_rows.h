@@ -70,7 +70,8 @@ typedef struct cp_result_rows {
     double vehicle_km;
     double vehicle_h;
     size_t departed;
-    char *counters; /* JSON */
+    char *counters;      /* JSON */
+    char *crash_options; /* JSON: cp_crash_options_json */
     double wall_time_s;
     cp_crash_row *crash; /* in order of time, then ids: their numbers */
     size_t crash_count;

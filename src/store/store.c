@@ -2,6 +2,7 @@
 #include "store/store.h"
 
 #include "core/file.h"
+#include "store/schema.h"
 #include "store/store_sqlite.h"
 
 #include <math.h>
@@ -13,20 +14,12 @@
 #include <unistd.h>
 
 #define BUSY_TIMEOUT_MS 60000
-#define APPLICATION_ID 0x43504c53 /* "CPLS" */
 
 struct cp_store {
     char *path;
     sqlite3 *handle;
     int in_transaction;
 };
-
-// The files of db/schema and db/views.sql, embedded at build time.
-extern const unsigned char cp_schema_001[];
-extern const unsigned char cp_schema_002[];
-extern const unsigned char cp_views[];
-
-static const unsigned char *const MIGRATION[CP_STORE_VERSION] = {cp_schema_001, cp_schema_002};
 
 sqlite3 *cp_store_sqlite(cp_store *store)
 {
@@ -115,15 +108,15 @@ cp_status cp_statement_run(cp_statement *statement, cp_error *error)
     return status;
 }
 
-static cp_status execute(cp_store *store, const char *what, const char *sql, cp_error *error)
+cp_status cp_store_execute(cp_store *store, const char *what, const char *sql, cp_error *error)
 {
     if (sqlite3_exec(store->handle, sql, NULL, NULL, NULL) != SQLITE_OK)
         return cp_store_fail(store, error, what);
     return CP_OK;
 }
 
-static cp_status read_integer(cp_store *store, const char *what, const char *sql, int64_t *value,
-                              cp_error *error)
+cp_status cp_store_integer(cp_store *store, const char *what, const char *sql, int64_t *value,
+                           cp_error *error)
 {
     cp_statement statement;
     int row = 0;
@@ -140,14 +133,14 @@ static cp_status read_integer(cp_store *store, const char *what, const char *sql
 
 cp_status cp_store_begin(cp_store *store, cp_error *error)
 {
-    cp_status status = execute(store, "beginning a transaction", "BEGIN IMMEDIATE", error);
+    cp_status status = cp_store_execute(store, "beginning a transaction", "BEGIN IMMEDIATE", error);
     store->in_transaction = status == CP_OK;
     return status;
 }
 
 cp_status cp_store_commit(cp_store *store, cp_error *error)
 {
-    cp_status status = execute(store, "committing", "COMMIT", error);
+    cp_status status = cp_store_execute(store, "committing", "COMMIT", error);
     if (status == CP_OK)
         store->in_transaction = 0;
     return status;
@@ -163,61 +156,21 @@ void cp_store_rollback(cp_store *store)
 
 // ---- opening -------------------------------------------------------------------------------
 
-// Bring the schema from version to CP_STORE_VERSION, all or nothing.
-static cp_status migrate(cp_store *store, cp_error *error)
-{
-    cp_status status = cp_store_begin(store, error);
-    int64_t version = 0;
-    if (status == CP_OK) // again under the lock: another process may have been faster
-        status = read_integer(store, "reading its version", "PRAGMA user_version", &version, error);
-    for (int64_t k = version; status == CP_OK && k < CP_STORE_VERSION; k++)
-        status = execute(store, "writing the schema", (const char *)MIGRATION[k], error);
-    if (status == CP_OK)
-        status = execute(store, "writing the views", (const char *)cp_views, error);
-    if (status == CP_OK) {
-        char stamp[128];
-        snprintf(stamp, sizeof stamp, "PRAGMA application_id=%d; PRAGMA user_version=%d",
-                 APPLICATION_ID, CP_STORE_VERSION);
-        status = execute(store, "writing its version", stamp, error);
-    }
-    if (status == CP_OK)
-        status = cp_store_commit(store, error);
-    if (status != CP_OK)
-        cp_store_rollback(store);
-    return status;
-}
-
 // Whose file it is and how old, before anything is changed in it.
 static cp_status check_version(cp_store *store, cp_store_mode mode, cp_error *error)
 {
-    int64_t application = 0, version = 0, objects = 0;
-    cp_status status =
-        read_integer(store, "reading", "SELECT count(*) FROM sqlite_schema", &objects, error);
-    if (status != CP_OK && (sqlite3_errcode(store->handle) & 0xff) == SQLITE_NOTADB)
-        return cp_fail(error, CP_BAD_INPUT, "%s: is not a database", store->path);
-    if (status == CP_OK)
-        status = read_integer(store, "reading", "PRAGMA application_id", &application, error);
-    if (status == CP_OK)
-        status = read_integer(store, "reading", "PRAGMA user_version", &version, error);
-    if (status != CP_OK)
+    int version = 0;
+    cp_status status = cp_schema_check(store, &version, error);
+    if (status != CP_OK || version == CP_STORE_VERSION)
         return status;
-
-    bool empty = objects == 0 && application == 0 && version == 0;
-    if (application != APPLICATION_ID && !(empty && mode == CP_STORE_CREATE))
+    if (version == 0 && mode != CP_STORE_CREATE)
         return cp_fail(error, CP_BAD_INPUT, "%s: is not a database of crashpulse", store->path);
-    if (version > CP_STORE_VERSION)
-        return cp_fail(error, CP_BAD_INPUT,
-                       "%s: was written by a newer crashpulse (schema version %lld, this program "
-                       "knows up to %d)",
-                       store->path, (long long)version, CP_STORE_VERSION);
-    if (version == CP_STORE_VERSION)
-        return CP_OK;
     if (mode == CP_STORE_READ)
         return cp_fail(error, CP_BAD_INPUT,
-                       "%s: was written by an older crashpulse (schema version %lld, this program "
-                       "reads %d); 'crashpulse run' brings it up to date",
-                       store->path, (long long)version, CP_STORE_VERSION);
-    return migrate(store, error);
+                       "%s: was written by an older crashpulse (schema version %d, this program "
+                       "reads %d); 'crashpulse check --upgrade' brings it up to date",
+                       store->path, version, CP_STORE_VERSION);
+    return cp_schema_migrate(store, error);
 }
 
 static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *error)
@@ -238,10 +191,10 @@ static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *erro
     sqlite3_busy_timeout(store->handle, BUSY_TIMEOUT_MS);
     cp_status status = check_version(store, mode, error);
     if (status == CP_OK && mode != CP_STORE_READ)
-        status = execute(store, "setting it up",
-                         "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL", error);
+        status = cp_store_execute(store, "setting it up",
+                                  "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL", error);
     if (status == CP_OK)
-        status = execute(store, "setting it up", "PRAGMA foreign_keys=ON", error);
+        status = cp_store_execute(store, "setting it up", "PRAGMA foreign_keys=ON", error);
 
     // A creation that failed leaves nothing behind.
     if (status != CP_OK && !exists) {

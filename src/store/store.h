@@ -16,7 +16,7 @@ typedef enum cp_store_mode {
 } cp_store_mode;
 
 /* Version of the schema this program writes: number of the last file of db/schema. */
-#define CP_STORE_VERSION 2
+extern const int CP_STORE_VERSION;
 
 /* Open path. The caller closes. Errors: CP_BAD_INPUT for a file that is missing, no database, not a
  * database of crashpulse, or written by a newer crashpulse; CP_BUSY; CP_STORE_FAILED. After a

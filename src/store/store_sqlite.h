@@ -5,6 +5,7 @@
 #include "store/store.h"
 
 #include <sqlite3.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* SQLite under the store; for the files of this folder only. */
@@ -13,6 +14,13 @@ sqlite3 *cp_store_sqlite(cp_store *store);
 
 /* SQLite's last error as a status and message "path: what: SQLite's words". */
 cp_status cp_store_fail(cp_store *store, cp_error *error, const char *what);
+
+/* Run SQL without rows, one statement or several. */
+CP_MUST_CHECK cp_status cp_store_execute(cp_store *store, const char *what, const char *sql,
+                                         cp_error *error);
+/* First column of the first row of a query; 0 without a row. */
+CP_MUST_CHECK cp_status cp_store_integer(cp_store *store, const char *what, const char *sql,
+                                         int64_t *value, cp_error *error);
 
 /* A statement that names what it does in its errors. Zero-initialise, prepare, finish. Binding
  * remembers its first failure, which the next step reports. */

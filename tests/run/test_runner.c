@@ -137,11 +137,12 @@ static char *dump(const char *db)
     size_t size = 0, room = 1 << 24;
     char *text = calloc(1, room);
     assert_non_null(text);
-    snprintf(command, sizeof command,
-             "for t in study scenario variant vehicle_model replication crash crash_vehicle "
-             "contact sumo_collision pulse; do echo \"$t\"; sqlite3 -cmd '.mode quote' '%s' "
-             "\"SELECT * FROM $t ORDER BY 1, 2\"; done",
-             db);
+    snprintf(
+        command, sizeof command,
+        "for t in study scenario variant vehicle_model replication crash crash_vehicle "
+        "contact sumo_collision pulse sweep_value; do echo \"$t\"; sqlite3 -cmd '.mode quote' '%s' "
+        "\"SELECT * FROM $t ORDER BY 1, 2\"; done",
+        db);
     FILE *shell = popen(command, "r");
     assert_non_null(shell);
     size = fread(text, 1, room - 1, shell);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/fixture.h"
 
-#include "store/pulse_codec.h"
+#include "pulse/pulse_codec.h"
 
 #define MEDIAN "SELECT coalesce(olc_median_g, -1) FROM olc_by_variant WHERE variant = 'baseline'"
 

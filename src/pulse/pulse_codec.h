@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef STORE_PULSE_CODEC_H
-#define STORE_PULSE_CODEC_H
+#ifndef PULSE_PULSE_CODEC_H
+#define PULSE_PULSE_CODEC_H
 
 #include "pulse/pulse.h"
 
@@ -8,16 +8,16 @@
 #include <stdint.h>
 
 /* Pulses as small blobs. A pulse is brought to about 1 kHz, every channel is rounded to its
- * resolution, predicted from what came before (accelerations and yaw by their last value,
- * velocities from the accelerations, displacements in a straight line), and the differences are
- * packed as variable-length integers and compressed with zstd. Decoding gives the rounded values
- * back exactly. */
+ * resolution and predicted (pulse_prediction.h), and the differences are packed as variable-length
+ * integers and compressed with zstd. Decoding gives the rounded values back exactly. Codec 1
+ * predicts from the last samples; codec 2 follows velocities, displacements and yaw as unrounded
+ * integrals, which leaves little more than the accelerations to pack. Resolutions are the same. */
 
-#define CP_PULSE_CODEC 1 /* the only one so far: column pulse.codec */
+#define CP_PULSE_CODEC 2 /* what is written; both are read. Column pulse.codec */
 #define CP_PULSE_CODEC_INTERVAL_S 1e-3
 #define CP_PULSE_CODEC_SAMPLES_MAX 100000
 
-/* Steps of the channels in codec 1, in the units of CP_PULSE_COLUMN. */
+/* Steps of the channels, in the units of CP_PULSE_COLUMN. */
 extern const double CP_PULSE_RESOLUTION[CP_CHANNEL_COUNT];
 
 /* The record worth keeping of a simulated pulse: accelerations through CFC180 (so that thinning

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "store/pulse_codec.h"
+#include "pulse/pulse_codec.h"
+
+#include "pulse/pulse_prediction.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -15,43 +17,6 @@ const double CP_PULSE_RESOLUTION[CP_CHANNEL_COUNT] = {
     [CP_CHANNEL_AX] = 0.1,     [CP_CHANNEL_AY] = 0.1,         [CP_CHANNEL_VX] = 0.001,
     [CP_CHANNEL_VY] = 0.001,   [CP_CHANNEL_X] = 0.0001,       [CP_CHANNEL_Y] = 0.0001,
     [CP_CHANNEL_YAW] = 0.0001, [CP_CHANNEL_YAW_RATE] = 0.001, [CP_CHANNEL_YAW_ACC] = 1.0};
-
-// Channels in the order they are packed, each with the channel it is the integral of (itself:
-// none): a channel comes after the one that predicts it.
-static const struct {
-    cp_pulse_channel channel;
-    cp_pulse_channel rate;
-} PACKING[CP_CHANNEL_COUNT] = {{CP_CHANNEL_AX, CP_CHANNEL_AX},
-                               {CP_CHANNEL_VX, CP_CHANNEL_AX},
-                               {CP_CHANNEL_X, CP_CHANNEL_X},
-                               {CP_CHANNEL_AY, CP_CHANNEL_AY},
-                               {CP_CHANNEL_VY, CP_CHANNEL_AY},
-                               {CP_CHANNEL_Y, CP_CHANNEL_Y},
-                               {CP_CHANNEL_YAW_ACC, CP_CHANNEL_YAW_ACC},
-                               {CP_CHANNEL_YAW_RATE, CP_CHANNEL_YAW_ACC},
-                               {CP_CHANNEL_YAW, CP_CHANNEL_YAW_RATE}};
-
-// ---- prediction ----------------------------------------------------------------------------
-
-// What sample k of a channel is expected to be from the samples before it (and the rate's up to
-// it), in steps. Integers and plain multiplications only: the same on every machine.
-static int64_t predict(int64_t *const steps[CP_CHANNEL_COUNT], size_t place, size_t k,
-                       double interval_s)
-{
-    cp_pulse_channel channel = PACKING[place].channel, rate = PACKING[place].rate;
-    const int64_t *own = steps[channel];
-    if (k == 0)
-        return 0;
-    if (rate != channel) {
-        // Trapezoid of the rate, in steps of this channel. Bounded: a hostile blob may hold
-        // anything.
-        double mean = 0.5 * ((double)steps[rate][k - 1] + (double)steps[rate][k]);
-        double gain = mean * CP_PULSE_RESOLUTION[rate] * interval_s / CP_PULSE_RESOLUTION[channel];
-        return fabs(gain) < (double)INT32_MAX ? own[k - 1] + llround(gain) : own[k - 1];
-    }
-    bool straight = channel == CP_CHANNEL_X || channel == CP_CHANNEL_Y;
-    return straight && k > 1 ? 2 * own[k - 1] - own[k - 2] : own[k - 1];
-}
 
 // Signed differences as unsigned numbers, small ones small: 0, -1, 1, -2, ... and back.
 static uint64_t fold(int64_t value)
@@ -86,9 +51,9 @@ static size_t write_differences(int64_t *const steps[CP_CHANNEL_COUNT], size_t c
 {
     size_t used = 0;
     for (size_t place = 0; place < CP_CHANNEL_COUNT; place++) {
+        cp_prediction prediction = cp_prediction_begin(CP_PULSE_CODEC, place, steps, interval_s);
         for (size_t k = 0; k < count; k++) {
-            int64_t difference =
-                steps[PACKING[place].channel][k] - predict(steps, place, k, interval_s);
+            int64_t difference = steps[prediction.channel][k] - cp_prediction_next(&prediction, k);
             uint64_t rest = fold(difference);
             while (rest >= 0x80) {
                 bytes[used++] = (unsigned char)(rest | 0x80);
@@ -185,12 +150,13 @@ static bool read_difference(const unsigned char *bytes, size_t size, size_t *pla
     return false;
 }
 
-static cp_status read_differences(const unsigned char *bytes, size_t size,
+static cp_status read_differences(int codec, const unsigned char *bytes, size_t size,
                                   int64_t *const steps[CP_CHANNEL_COUNT], size_t count,
                                   double interval_s, cp_error *error)
 {
     size_t at = 0;
     for (size_t place = 0; place < CP_CHANNEL_COUNT; place++) {
+        cp_prediction prediction = cp_prediction_begin(codec, place, steps, interval_s);
         for (size_t k = 0; k < count; k++) {
             int64_t difference = 0;
             if (!read_difference(bytes, size, &at, &difference))
@@ -198,10 +164,10 @@ static cp_status read_differences(const unsigned char *bytes, size_t size,
             // The encoder writes 32-bit steps only; anything larger would soon overflow.
             if (llabs(difference) > 8 * (int64_t)INT32_MAX)
                 return fail_damaged(error, "a value is out of range");
-            int64_t value = predict(steps, place, k, interval_s) + difference;
+            int64_t value = cp_prediction_next(&prediction, k) + difference;
             if (llabs(value) > INT32_MAX)
                 return fail_damaged(error, "a value is out of range");
-            steps[PACKING[place].channel][k] = value;
+            steps[prediction.channel][k] = value;
         }
     }
     return at == size ? CP_OK : fail_damaged(error, "bytes are left over");
@@ -229,7 +195,7 @@ cp_status cp_pulse_decode(int codec, const void *blob, size_t size, int64_t samp
     unsigned char *bytes = NULL;
     size_t used = 0, count = (size_t)sample_count;
     *pulse = (cp_pulse){0};
-    if (codec != CP_PULSE_CODEC)
+    if (codec < 1 || codec > CP_PULSE_CODEC)
         return cp_fail(error, CP_BAD_INPUT, "pulse: codec %d is unknown to this program", codec);
     cp_status status = check_size(sample_count, sample_interval_s, error);
     if (status == CP_OK)
@@ -237,7 +203,7 @@ cp_status cp_pulse_decode(int codec, const void *blob, size_t size, int64_t samp
     if (status == CP_OK)
         status = decompress(blob, size, count, &bytes, &used, error);
     if (status == CP_OK)
-        status = read_differences(bytes, used, steps, count, sample_interval_s, error);
+        status = read_differences(codec, bytes, used, steps, count, sample_interval_s, error);
     if (status == CP_OK)
         status = cp_pulse_create(pulse, count, sample_interval_s, error);
     for (int c = 0; status == CP_OK && c < CP_CHANNEL_COUNT; c++)

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STORE_SCHEMA_H
+#define STORE_SCHEMA_H
+
+#include "store/store.h"
+
+/* Versions of the schema; for the files of this folder only. Version N is what the first N files of
+ * db/schema make, run one after the other; PRAGMA user_version tells it. A file is never changed
+ * once databases were written with it: what is to be different goes into the next one. */
+
+/* The SQL of version k + 1, zero-terminated; CP_STORE_VERSION entries. */
+extern const unsigned char *const CP_SCHEMA[];
+
+/* Bring the database from whatever version it has to CP_STORE_VERSION and write the views, all in
+ * one transaction or not at all. Every reference between tables is checked before the commit.
+ * Errors: CP_STORE_FAILED, CP_BUSY. */
+CP_MUST_CHECK cp_status cp_schema_migrate(cp_store *store, cp_error *error);
+
+/* Whose file it is and how old. version is 0 for an empty file. Errors: CP_BAD_INPUT for no
+ * database, another program's, or one of a newer crashpulse. */
+CP_MUST_CHECK cp_status cp_schema_check(cp_store *store, int *version, cp_error *error);
+
+#endif

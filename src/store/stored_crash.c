@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "store/stored_crash.h"
+
+#include "pulse/pulse_codec.h"
+#include "store/result_rows.h"
+#include "store/store_sqlite.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const ROLE[2] = {"a", "b"};
+
+char *cp_crash_options_json(const cp_crash_options *options)
+{
+    char text[256];
+    snprintf(text, sizeof text,
+             "{\"time_step_s\":%.17g,\"duration_s\":%.17g,\"longest_duration_s\":%.17g,"
+             "\"coast_after_s\":%.17g}",
+             options->time_step_s, options->duration_s, options->longest_duration_s,
+             options->coast_after_s);
+    return strdup(text);
+}
+
+// ---- reading -------------------------------------------------------------------------------
+
+static double real_or_nan(const cp_statement *s, int column)
+{
+    return sqlite3_column_type(s->handle, column) == SQLITE_NULL
+               ? NAN
+               : sqlite3_column_double(s->handle, column);
+}
+
+static const char *text_of(const cp_statement *s, int column)
+{
+    const unsigned char *text = sqlite3_column_text(s->handle, column);
+    return text != NULL ? (const char *)text : "";
+}
+
+// Rows of schema versions 1 and 2 have no options: what the program used then are the defaults
+// below.
+static const char READ_CRASH[] =
+    "SELECT c.time_s, c.closing_speed_m_s, c.lateral_offset_m, c.angle_rad, c.overlap_1, "
+    "coalesce(r.crash_options ->> 'time_step_s', 0.0005), "
+    "coalesce(r.crash_options ->> 'duration_s', 0.2), "
+    "coalesce(r.crash_options ->> 'longest_duration_s', 0.4), "
+    "coalesce(r.crash_options ->> 'coast_after_s', 0.01), r.crashpulse_version "
+    "FROM crash AS c JOIN replication AS r ON r.id = c.replication_id WHERE c.id = ?1";
+
+static cp_status read_crash(cp_store *store, cp_stored_crash *crash, cp_error *error)
+{
+    cp_statement s;
+    int row = 0;
+    cp_status status = cp_statement_prepare(store, "reading a crash", READ_CRASH, &s, error);
+    cp_bind_integer(&s, 1, crash->id);
+    if (status == CP_OK)
+        status = cp_statement_row(&s, &row, error);
+    if (status == CP_OK && !row)
+        status = cp_fail(error, CP_BAD_INPUT, "%s: has no crash %lld", cp_store_path(store),
+                         (long long)crash->id);
+    if (status == CP_OK) {
+        crash->time_s = sqlite3_column_double(s.handle, 0);
+        crash->description.closing_speed_m_s = sqlite3_column_double(s.handle, 1);
+        crash->description.lateral_offset_m = sqlite3_column_double(s.handle, 2);
+        crash->description.angle_rad = sqlite3_column_double(s.handle, 3);
+        crash->description.overlap_1 = real_or_nan(&s, 4);
+        crash->options = cp_crash_options_default();
+        crash->options.time_step_s = sqlite3_column_double(s.handle, 5);
+        crash->options.duration_s = sqlite3_column_double(s.handle, 6);
+        crash->options.longest_duration_s = sqlite3_column_double(s.handle, 7);
+        crash->options.coast_after_s = sqlite3_column_double(s.handle, 8);
+        snprintf(crash->crashpulse_version, sizeof crash->crashpulse_version, "%s", text_of(&s, 9));
+    }
+    cp_statement_finish(&s);
+    return status;
+}
+
+static cp_status take_side(const char *text, cp_contact_side *side, cp_error *error)
+{
+    for (int k = CP_SIDE_FRONT; k <= CP_SIDE_REAR; k++) {
+        *side = (cp_contact_side)k;
+        if (strcmp(cp_contact_side_text(*side), text) == 0)
+            return CP_OK;
+    }
+    return cp_fail(error, CP_BAD_INPUT, "contact_side '%s' is unknown", text);
+}
+
+static const char READ_VEHICLE[] =
+    "SELECT v.cog_x_m, v.cog_y_m, v.yaw_rad, v.velocity_x_m_s, v.velocity_y_m_s, v.yaw_rate_rad_s, "
+    "v.speed_m_s, v.velocity_angle_rad, v.contact_side, v.sumo_id, v.vehicle_model, m.yaml "
+    "FROM crash_vehicle AS v JOIN vehicle_model AS m ON m.name = v.vehicle_model "
+    "WHERE v.crash_id = ?1 AND v.role = ?2";
+
+static cp_status read_vehicle(cp_store *store, int role, cp_stored_crash *crash, cp_error *error)
+{
+    cp_statement s;
+    int row = 0;
+    cp_status status =
+        cp_statement_prepare(store, "reading a vehicle of a crash", READ_VEHICLE, &s, error);
+    cp_bind_integer(&s, 1, crash->id);
+    cp_bind_text(&s, 2, ROLE[role]);
+    if (status == CP_OK)
+        status = cp_statement_row(&s, &row, error);
+    if (status == CP_OK && !row)
+        status = cp_fail(error, CP_BAD_INPUT, "%s: crash %lld has no vehicle %s",
+                         cp_store_path(store), (long long)crash->id, ROLE[role]);
+    if (status != CP_OK)
+        goto done;
+    crash->configuration.vehicle[role] = (cp_body_state){
+        .cog_m = {sqlite3_column_double(s.handle, 0), sqlite3_column_double(s.handle, 1)},
+        .yaw_rad = sqlite3_column_double(s.handle, 2),
+        .velocity_m_s = {sqlite3_column_double(s.handle, 3), sqlite3_column_double(s.handle, 4)},
+        .yaw_rate_rad_s = sqlite3_column_double(s.handle, 5)};
+    crash->description.speed_m_s[role] = sqlite3_column_double(s.handle, 6);
+    crash->description.velocity_angle_rad[role] = real_or_nan(&s, 7);
+    snprintf(crash->sumo_id[role], sizeof crash->sumo_id[role], "%s", text_of(&s, 9));
+    status = take_side(text_of(&s, 8), &crash->configuration.side[role], error);
+    if (status == CP_OK) {
+        char name[256];
+        snprintf(name, sizeof name, "%.100s: vehicle_model %.64s", cp_store_path(store),
+                 text_of(&s, 10));
+        status = cp_vehicle_model_parse(name, text_of(&s, 11),
+                                        (size_t)sqlite3_column_bytes(s.handle, 11),
+                                        &crash->model[role], error);
+    }
+done:
+    cp_statement_finish(&s);
+    return status;
+}
+
+cp_status cp_stored_crash_read(cp_store *store, int64_t crash_id, cp_stored_crash *crash,
+                               cp_error *error)
+{
+    *crash = (cp_stored_crash){.id = crash_id};
+    crash->configuration.barrier = cp_barrier_default();
+    cp_status status = read_crash(store, crash, error);
+    for (int role = 0; status == CP_OK && role < 2; role++)
+        status = read_vehicle(store, role, crash, error);
+    return status;
+}
+
+// ---- comparing -----------------------------------------------------------------------------
+
+// Other bytes: the same samples after all?
+static cp_status compare_samples(const cp_statement *s, const cp_pulse *record, bool *same,
+                                 cp_error *error)
+{
+    cp_pulse stored = {0};
+    cp_status status = cp_pulse_decode(
+        sqlite3_column_int(s->handle, 0), sqlite3_column_blob(s->handle, 1),
+        (size_t)sqlite3_column_bytes(s->handle, 1), sqlite3_column_int64(s->handle, 2),
+        sqlite3_column_double(s->handle, 3), &stored, error);
+    *same = status == CP_OK && stored.sample_count == record->sample_count &&
+            stored.sample_interval_s == record->sample_interval_s;
+    for (int c = 0; *same && c < CP_CHANNEL_COUNT; c++)
+        for (size_t k = 0; *same && k < stored.sample_count; k++)
+            *same =
+                stored.channel[c][k] ==
+                llround(record->channel[c][k] / CP_PULSE_RESOLUTION[c]) * CP_PULSE_RESOLUTION[c];
+    cp_pulse_destroy(&stored);
+    return status;
+}
+
+static cp_status compare_found(const cp_statement *s, const cp_pulse *raw, cp_stored_match *match,
+                               cp_error *error)
+{
+    cp_pulse record = {0};
+    void *bytes = NULL;
+    size_t size = 0;
+    bool same = false;
+    cp_status status = cp_pulse_codec_record(raw, &record, error);
+    if (status == CP_OK)
+        status = cp_pulse_encode(&record, &bytes, &size, error);
+    if (status != CP_OK)
+        goto done;
+    if (sqlite3_column_int(s->handle, 0) == CP_PULSE_CODEC &&
+        size == (size_t)sqlite3_column_bytes(s->handle, 1) &&
+        memcmp(bytes, sqlite3_column_blob(s->handle, 1), size) == 0) {
+        *match = CP_STORED_SAME_BYTES;
+        goto done;
+    }
+    status = compare_samples(s, &record, &same, error);
+    *match = same ? CP_STORED_SAME_SAMPLES : CP_STORED_DIFFERENT;
+done:
+    free(bytes);
+    cp_pulse_destroy(&record);
+    return status;
+}
+
+static cp_status compare_pulse(cp_store *store, int64_t crash_id, int role, const cp_pulse *raw,
+                               cp_stored_match *match, cp_error *error)
+{
+    cp_statement s;
+    int row = 0;
+    cp_status status = cp_statement_prepare(
+        store, "reading a pulse",
+        "SELECT codec, samples, sample_count, sample_interval_s FROM pulse WHERE crash_id = ?1 AND "
+        "role = ?2",
+        &s, error);
+    cp_bind_integer(&s, 1, crash_id);
+    cp_bind_text(&s, 2, ROLE[role]);
+    if (status == CP_OK)
+        status = cp_statement_row(&s, &row, error);
+    *match = CP_STORED_NOTHING;
+    if (status == CP_OK && row)
+        status = compare_found(&s, raw, match, error);
+    cp_statement_finish(&s);
+    return status;
+}
+
+cp_status cp_stored_crash_compare(cp_store *store, int64_t crash_id, const cp_crash_result *result,
+                                  cp_stored_match *match, cp_error *error)
+{
+    *match = CP_STORED_SAME_BYTES;
+    cp_status status = CP_OK;
+    for (int role = 0; status == CP_OK && role < 2; role++) {
+        cp_stored_match one;
+        status = compare_pulse(store, crash_id, role, &result->pulse[role], &one, error);
+        if (status == CP_OK && one > *match)
+            *match = one;
+    }
+    return status;
+}

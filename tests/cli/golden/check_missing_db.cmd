@@ -1,0 +1,1 @@
+$crashpulse check none.db

@@ -1,0 +1,1 @@
+$crashpulse crash --from $db

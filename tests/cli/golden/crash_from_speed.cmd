@@ -1,0 +1,1 @@
+$crashpulse crash --from $db --crash 5 --speed 50

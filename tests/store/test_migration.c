@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "store/fixture.h"
+
+#include "pulse/pulse_codec.h"
+#include "store/inspection.h"
+
+#include <sys/wait.h>
+
+/* tests/store/version_1.sql is the dump of a database that the first version wrote: a study of four
+ * replications with five crashes. A database of version K is that one with the files 2 ... K of
+ * db/schema run on it, so a new version is tested from every earlier one without another line. */
+
+static void shell(const char *format, ...) __attribute__((format(printf, 1, 2)));
+static void shell(const char *format, ...)
+{
+    char command[2048];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(command, sizeof command, format, arguments);
+    va_end(arguments);
+    if (system(command) != 0)
+        fail_msg("failed: %s", command);
+}
+
+static const char *source(void)
+{
+    const char *folder = getenv("CRASHPULSE_SOURCE");
+    if (folder == NULL)
+        fail_msg("CRASHPULSE_SOURCE names the source folder; run this by ctest");
+    return folder;
+}
+
+static void make_version(const char *db, int version)
+{
+    shell("rm -f '%s' '%s-wal' '%s-shm'", db, db, db);
+    shell("sqlite3 -bail '%s' < '%s/tests/store/version_1.sql'", db, source());
+    for (int k = 2; k <= version; k++)
+        shell("cat '%s'/db/schema/%03d_*.sql | sqlite3 -bail '%s'", source(), k, db);
+    shell("sqlite3 '%s' 'PRAGMA user_version = %d'", db, version);
+}
+
+static char *output_of(const char *db, const char *sql)
+{
+    char command[2048];
+    size_t room = 1 << 20;
+    char *text = calloc(1, room);
+    assert_non_null(text);
+    snprintf(command, sizeof command, "sqlite3 -cmd '.mode quote' '%s' \"%s\"", db, sql);
+    FILE *pipe = popen(command, "r");
+    assert_non_null(pipe);
+    assert_true(fread(text, 1, room - 1, pipe) > 0);
+    assert_int_equal(pclose(pipe), 0);
+    return text;
+}
+
+// What the first version knew, column by column, of the tables it had.
+static char *rows_of_version_1(const char *db)
+{
+    return output_of(
+        db, "SELECT id, name, design, seed, yaml, hash FROM study; SELECT id, name, sumocfg, files "
+            "FROM scenario; SELECT * FROM variant; SELECT id, scenario_id, variant_id, sweep, "
+            "number, seed, status, configuration_hash, vehicle_km, counters FROM replication ORDER "
+            "BY id; SELECT id, time_s, closing_speed_m_s, shift_m FROM crash ORDER BY id; SELECT "
+            "crash_id, role, sumo_id, yaw_rad, olc_g, delta_v_m_s, end_s FROM crash_vehicle ORDER "
+            "BY 1, 2; SELECT * FROM pulse ORDER BY 1, 2; SELECT * FROM contact; SELECT * FROM "
+            "sumo_collision; SELECT replication_id, number, host, pid, outcome FROM attempt; "
+            "SELECT name, hash, yaml FROM vehicle_model");
+}
+
+// Every table, view, index and trigger with its columns, however it came to be.
+static char *structure(const char *db)
+{
+    return output_of(
+        db,
+        "SELECT m.type, m.name, m.tbl_name, p.cid, p.name, p.type, p.\\\"notnull\\\", p.pk FROM "
+        "sqlite_schema AS m LEFT JOIN pragma_table_info(m.name) AS p WHERE m.name NOT LIKE "
+        "'sqlite_stat%' ORDER BY 1, 2, 4");
+}
+
+static void migrates_from_every_version(void **state)
+{
+    const fixture *f = *state;
+    char fresh[128];
+    cp_store *store = NULL;
+    cp_error error = {0};
+    cp_inspection inspection;
+    snprintf(fresh, sizeof fresh, "%s/fresh.db", f->folder);
+    assert_ok(cp_store_open(fresh, CP_STORE_CREATE, &store, &error), &error);
+    cp_store_close(store);
+    char *wanted = structure(fresh);
+    for (int version = 1; version < CP_STORE_VERSION; version++) {
+        print_message("from version %d to %d\n", version, CP_STORE_VERSION);
+        make_version(f->db, version);
+        char *before = rows_of_version_1(f->db);
+
+        // Reading does not change it, and says what would.
+        assert_int_equal(cp_store_open(f->db, CP_STORE_READ, &store, &error), CP_BAD_INPUT);
+        assert_non_null(strstr(error.text, "older crashpulse"));
+        assert_non_null(strstr(error.text, "check --upgrade"));
+
+        assert_ok(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), &error);
+        assert_true(number_of(store, "PRAGMA user_version") == CP_STORE_VERSION);
+        assert_true(number_of(store, "SELECT sum(crashes) FROM olc_by_variant") == 5);
+        assert_ok(cp_inspection_run(store, &inspection, &error), &error);
+        assert_int_equal(inspection.wrong, 0);
+        cp_store_close(store);
+
+        char *after = rows_of_version_1(f->db);
+        char *found = structure(f->db);
+        assert_string_equal(after, before);
+        assert_string_equal(found, wanted);
+        free(before);
+        free(after);
+        free(found);
+    }
+    free(wanted);
+}
+
+// Pulses that the first codec packed, and what the program of that version unpacked of them.
+static void first_codec_is_read(void **state)
+{
+    const fixture *f = *state;
+    cp_store *store = NULL;
+    cp_error error = {0};
+    cp_pulse pulse;
+    make_version(f->db, 1);
+    assert_ok(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), &error);
+    assert_true(number_of(store, "SELECT count(*) FROM pulse WHERE codec = 1") == 10);
+    double id = number_of(store, "SELECT min(id) FROM crash");
+    assert_ok(cp_result_pulse_read(store, (int64_t)id, "a", &pulse, &error), &error);
+    assert_int_equal(pulse.sample_count, 401);
+    assert_true(fabs(pulse.channel[CP_CHANNEL_VX][0] - 2.815) < 1e-9);
+    assert_true(fabs(pulse.channel[CP_CHANNEL_VX][100] - 0.898) < 1e-9);
+    assert_true(fabs(pulse.channel[CP_CHANNEL_X][200] - 0.2587) < 1e-9);
+    assert_true(fabs(pulse.channel[CP_CHANNEL_AX][30] - -33.8) < 1e-9);
+    cp_pulse_destroy(&pulse);
+    cp_store_close(store);
+}
+
+// A step that cannot be taken leaves the database as it was, and all others' rows too.
+static void failed_migration_changes_nothing(void **state)
+{
+    const fixture *f = *state;
+    cp_store *store = NULL;
+    cp_error error = {0};
+    make_version(f->db, 1);
+    shell("sqlite3 '%s' 'CREATE TABLE pulse_channel (mine)'", f->db);
+    char *before = structure(f->db);
+    assert_int_equal(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), CP_STORE_FAILED);
+    assert_non_null(strstr(error.text, "bringing the schema to version 3"));
+    assert_non_null(strstr(error.text, "pulse_channel"));
+    char *after = structure(f->db);
+    assert_string_equal(after, before);
+    shell("test $(sqlite3 '%s' 'PRAGMA user_version') = 1", f->db);
+    free(before);
+    free(after);
+}
+
+// A row that points nowhere is found before the new version is committed.
+static void dangling_rows_stop_a_migration(void **state)
+{
+    const fixture *f = *state;
+    cp_store *store = NULL;
+    cp_error error = {0};
+    make_version(f->db, 1);
+    shell("sqlite3 '%s' 'DELETE FROM vehicle_model'", f->db);
+    assert_int_equal(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), CP_STORE_FAILED);
+    assert_non_null(strstr(error.text, "10 rows of crash_vehicle name rows of vehicle_model"));
+    shell("test $(sqlite3 '%s' 'PRAGMA user_version') = 1", f->db);
+}
+
+// Several programs that open an old database at once: one migrates, all can work.
+static void migrates_once_for_many(void **state)
+{
+    const fixture *f = *state;
+    make_version(f->db, 1);
+    pid_t pids[6];
+    for (int k = 0; k < 6; k++) {
+        pids[k] = fork();
+        assert_true(pids[k] >= 0);
+        if (pids[k] == 0) {
+            cp_store *store = NULL;
+            cp_status status = cp_store_open(f->db, CP_STORE_WRITE, &store, NULL);
+            cp_store_close(store);
+            _exit(status == CP_OK ? 0 : 1);
+        }
+    }
+    for (int k = 0; k < 6; k++) {
+        int status = 0;
+        assert_int_equal(waitpid(pids[k], &status, 0), pids[k]);
+        assert_int_equal(status, 0);
+    }
+    shell("test $(sqlite3 '%s' 'PRAGMA user_version') = %d", f->db, CP_STORE_VERSION);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(migrates_from_every_version, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(first_codec_is_read, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(failed_migration_changes_nothing, fixture_begin,
+                                        fixture_end),
+        cmocka_unit_test_setup_teardown(dangling_rows_stop_a_migration, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(migrates_once_for_many, fixture_begin, fixture_end),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -192,6 +192,18 @@ JOIN variant AS v ON v.id = r.variant_id
 GROUP BY s.id, v.id
 ORDER BY s.number, v.number;
 
+-- Contacts that are no crashes, by reason.
+DROP VIEW IF EXISTS contact_by_reason;
+CREATE VIEW contact_by_reason AS
+SELECT s.name AS scenario, v.name AS variant, x.verdict AS reason, count(*) AS contacts,
+       count(DISTINCT x.replication_id || ' ' || x.vehicle_1 || ' ' || x.vehicle_2) AS pairs
+FROM contact AS x
+JOIN replication AS r ON r.id = x.replication_id
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = r.variant_id
+GROUP BY s.id, v.id, x.verdict
+ORDER BY s.number, v.number, x.verdict;
+
 -- How far the study has come.
 DROP VIEW IF EXISTS progress;
 CREATE VIEW progress AS

@@ -47,26 +47,40 @@ bool cp_contact_goes_deep(const cp_touching_body body[2])
     return cp_approach_reaches(&approach, -CP_CONFIRMATION_DEPTH_M, &time_s);
 }
 
-// Share of a's width that b's rectangle covers, projected on a's y axis.
-static double overlap_share(const cp_rectangle *a, const cp_rectangle *b)
+double cp_width_in_way_m(const cp_rectangle *moving, const cp_rectangle *other)
 {
     cp_vec2 corners_m[4];
-    cp_rectangle_corners(b, corners_m);
-    double low_m = 0.5 * a->width_m, high_m = -low_m;
+    cp_rectangle_corners(other, corners_m);
+    double low_m = INFINITY, high_m = -INFINITY;
     for (int k = 0; k < 4; k++) {
-        double y_m = cp_pose_to_local((cp_pose){a->centre_m, a->yaw_rad}, corners_m[k]).y;
+        double y_m = cp_pose_to_local((cp_pose){moving->centre_m, moving->yaw_rad}, corners_m[k]).y;
         low_m = fmin(low_m, y_m);
         high_m = fmax(high_m, y_m);
     }
-    double half_m = 0.5 * a->width_m;
-    return (fmin(high_m, half_m) - fmax(low_m, -half_m)) / a->width_m;
+    double half_m = 0.5 * moving->width_m;
+    return fmin(high_m, half_m) - fmax(low_m, -half_m);
 }
 
 bool cp_contact_is_crash(const cp_touching_body body[2], const cp_touch *touch)
 {
     bool front_on_front = touch->side[0] == CP_SIDE_FRONT && touch->side[1] == CP_SIDE_FRONT;
-    if (front_on_front &&
-        overlap_share(&body[0].rectangle, &body[1].rectangle) >= CP_CONFIRMATION_OVERLAP_1)
+    if (front_on_front && cp_width_in_way_m(&body[0].rectangle, &body[1].rectangle) >=
+                              CP_CONFIRMATION_OVERLAP_1 * body[0].rectangle.width_m)
         return true;
     return cp_contact_goes_deep(body);
+}
+
+bool cp_motion_is_impossible(const cp_touching_body *body)
+{
+    const double slip_tangent = 0.364, slip_m_s = 1.5; // 20 degrees
+    cp_vec2 front_m_s = cp_vec2_rotate(body->front_velocity_m_s, -body->rectangle.yaw_rad);
+    double length_m = body->rectangle.length_m;
+    double sideways_m_s = fabs(front_m_s.y - 0.5 * body->yaw_rate_rad_s * length_m);
+    bool slides = sideways_m_s > fmax(slip_m_s, slip_tangent * fabs(front_m_s.x));
+
+    // A standing car whose heading creeps by rounding turns about nothing.
+    double speed_m_s = cp_vec2_length(body->front_velocity_m_s);
+    bool turns =
+        fabs(body->yaw_rate_rad_s) > 0.1 && fabs(body->yaw_rate_rad_s) * 0.5 * length_m > speed_m_s;
+    return slides || turns;
 }

@@ -22,4 +22,12 @@ bool cp_contact_goes_deep(const cp_touching_body body[2]);
  * 0 is a). */
 bool cp_contact_is_crash(const cp_touching_body body[2], const cp_touch *touch);
 
+/* Width over which the other body lies in the way of a body that goes straight on: of its front
+ * edge, what the other covers across its heading; <= 0 when it would pass. */
+double cp_width_in_way_m(const cp_rectangle *moving, const cp_rectangle *other);
+
+/* True when a body moves as no road vehicle can: its centre goes more than 20 degrees and 1.5 m/s
+ * sideways of its heading, or it turns about a point nearer than half its length. */
+bool cp_motion_is_impossible(const cp_touching_body *body);
+
 #endif

@@ -11,8 +11,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Two that touched have parted when there is this much between them.
+#define PARTED_M 0.1
+
+// A longer vehicle turns in a way of its own: SUMO lays a rigid rectangle from front to rear along
+// the lane, so that behind this much of its front it is not where a bus or a trailer would be.
+#define LONG_M 9.0
+#define FRONT_PART_M 6.0
+
+// Slower is standing.
+#define STANDING_M_S 0.1
+
 struct cp_detector {
-    cp_pair_set reported;
+    cp_pair_set crashed;      /* confirmed: never reported again */
+    cp_pair_set touching;     /* in contact at the end of the last step */
+    cp_pair_set touching_now; /* the same of the step being looked at */
     cp_broad_phase broad_phase;
     cp_box *box; /* one a vehicle: where its rectangle is during the step */
     size_t box_capacity;
@@ -31,7 +44,9 @@ void cp_detector_destroy(cp_detector *detector)
 {
     if (detector == NULL)
         return;
-    cp_pair_set_destroy(&detector->reported);
+    cp_pair_set_destroy(&detector->crashed);
+    cp_pair_set_destroy(&detector->touching);
+    cp_pair_set_destroy(&detector->touching_now);
     cp_broad_phase_destroy(&detector->broad_phase);
     free(detector->box);
     free(detector->impact);
@@ -56,39 +71,45 @@ static bool is_finite_state(const cp_vehicle_state *state)
     return isfinite(state->front_x_m) && isfinite(state->front_y_m) && isfinite(state->yaw_rad);
 }
 
-// Box of the way through the step. Between two headings a corner swings out of the straight line
-// by no more than its lever times 1 - cos of half the turn.
+// Box of the way through the step, and half of what parts two that touched. Between two headings a
+// corner swings out of the straight line by no more than its lever times 1 - cos of half the turn.
 static cp_box box_of(const cp_vehicle_motion *motion, double step_length_s)
 {
     cp_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     if (cp_motion_is_jump(motion, step_length_s)) {
         if (is_finite_state(&motion->after))
-            enclose(&box, &motion->after, 0.0);
+            enclose(&box, &motion->after, 0.5 * PARTED_M);
         return box;
     }
     if (!is_finite_state(&motion->before) || !is_finite_state(&motion->after))
         return box;
     double half_turn_rad = 0.5 * cp_wrap_angle(motion->after.yaw_rad - motion->before.yaw_rad);
     double lever_m = hypot(motion->after.length_m, motion->after.width_m);
-    double margin_m = lever_m * (1.0 - cos(half_turn_rad));
+    double margin_m = lever_m * (1.0 - cos(half_turn_rad)) + 0.5 * PARTED_M;
     enclose(&box, &motion->before, margin_m);
     enclose(&box, &motion->after, margin_m);
     return box;
 }
 
+// Separation at the end of the step.
+static double separation_after(const cp_vehicle_motion *const motion[2])
+{
+    cp_rectangle one = cp_footprint_of_state(&motion[0]->after);
+    cp_rectangle other = cp_footprint_of_state(&motion[1]->after);
+    return cp_rectangle_separation(&one, &other);
+}
+
 // Moment of the first touch as a fraction of the step; a vehicle that jumped is only where it is
 // at the end. False when the two do not touch.
 static bool find_touch(const cp_vehicle_motion *const motion[2], double step_length_s,
-                       double *fraction, bool *after_jump)
+                       double *fraction)
 {
-    *after_jump =
+    bool after_jump =
         cp_motion_is_jump(motion[0], step_length_s) || cp_motion_is_jump(motion[1], step_length_s);
-    if (!*after_jump)
+    if (!after_jump)
         return cp_first_contact(motion[0], motion[1], step_length_s, fraction);
-    cp_rectangle one = cp_footprint_of_state(&motion[0]->after);
-    cp_rectangle other = cp_footprint_of_state(&motion[1]->after);
     *fraction = 1.0;
-    return cp_rectangle_separation(&one, &other) <= 0.0;
+    return separation_after(motion) <= 0.0;
 }
 
 static const char *id_of(const cp_detector_scene *scene, uint32_t vehicle)
@@ -112,9 +133,84 @@ static int role_a(const cp_detector_scene *scene, const cp_vehicle_motion *const
     return at_fault[1] && !at_fault[0];
 }
 
+// Whether the touched point lies on the part of a long vehicle that bends away from its rectangle:
+// behind its front part, while it is turning or its rear has not left a junction.
+static bool is_on_bent_part(const cp_vehicle_state *state, double yaw_rate_rad_s, cp_vec2 point_m)
+{
+    if (state->length_m <= LONG_M)
+        return false;
+    cp_pose front = {{state->front_x_m, state->front_y_m}, state->yaw_rad};
+    bool is_behind = cp_pose_to_local(front, point_m).x < -FRONT_PART_M;
+    bool is_bent = fabs(yaw_rate_rad_s) > 0.01 || state->lane_position_m < state->length_m;
+    return is_behind && is_bent;
+}
+
+static cp_touching_body body_of(const cp_impact *impact, int role)
+{
+    return (cp_touching_body){.rectangle = cp_footprint_of_state(&impact->state[role]),
+                              .front_velocity_m_s = impact->front_velocity_m_s[role],
+                              .yaw_rate_rad_s = impact->yaw_rate_rad_s[role]};
+}
+
+// A corner of a car that stands in wait lies in the other's way, and nobody errs.
+static bool is_clipped_waiting(const cp_detector_scene *scene, const cp_impact *impact)
+{
+    int waiting = fabs(impact->state[0].speed_m_s) < STANDING_M_S ? 0 : 1;
+    if (!(fabs(impact->state[waiting].speed_m_s) < STANDING_M_S))
+        return false;
+    cp_rectangle moving = cp_footprint_of_state(&impact->state[1 - waiting]);
+    cp_rectangle standing = cp_footprint_of_state(&impact->state[waiting]);
+    if (cp_width_in_way_m(&moving, &standing) >= 0.5 * fmin(moving.width_m, standing.width_m))
+        return false;
+    for (int role = 0; role < 2; role++)
+        if (scene->is_at_fault != NULL &&
+            scene->is_at_fault(scene->fault_context, impact->vehicle[role]))
+            return false;
+    return true;
+}
+
+// What of SUMO's ways makes a crash of two rectangles an artefact; CONFIRMED when nothing does.
+static cp_contact_verdict filter_motion(const cp_detector_scene *scene,
+                                        const cp_vehicle_motion *const motion[2],
+                                        const cp_impact *impact)
+{
+    cp_touching_body body[2] = {body_of(impact, 0), body_of(impact, 1)};
+    if (!motion[0]->was_present || !motion[1]->was_present)
+        return CP_CONTACT_AT_INSERTION;
+    if (cp_motion_is_jump(motion[0], scene->step_length_s) ||
+        cp_motion_is_jump(motion[1], scene->step_length_s))
+        return CP_CONTACT_LANE_CHANGE_JUMP;
+    if (impact->verdict == CP_CONTACT_GRAZE)
+        return CP_CONTACT_GRAZE;
+    if (cp_motion_is_impossible(&body[0]) || cp_motion_is_impossible(&body[1]))
+        return CP_CONTACT_IMPOSSIBLE_MOTION;
+    for (int role = 0; role < 2; role++)
+        if (is_on_bent_part(&impact->state[role], impact->yaw_rate_rad_s[role], impact->contact_m))
+            return CP_CONTACT_LONG_TURNING;
+    return is_clipped_waiting(scene, impact) ? CP_CONTACT_CLIPPED_WAITING : CP_CONTACT_CONFIRMED;
+}
+
+// Verdict on an impact that is a crash or a graze by the motion of its rectangles alone.
+static cp_status judge(const cp_detector_scene *scene, const cp_vehicle_motion *const motion[2],
+                       cp_impact *impact, cp_error *error)
+{
+    cp_road_relation relation = CP_ROADS_MEET;
+    cp_status status = CP_OK;
+    if (scene->road_relation != NULL)
+        status = scene->road_relation(scene->road_context, &impact->state[0], &impact->state[1],
+                                      &relation, error);
+    if (relation == CP_ROADS_APART)
+        impact->verdict = CP_CONTACT_ROADS_APART;
+    else if (relation == CP_ROADS_OTHER_LEVEL)
+        impact->verdict = CP_CONTACT_OTHER_LEVEL;
+    else
+        impact->verdict = filter_motion(scene, motion, impact);
+    return status;
+}
+
 // All there is to say about a touch at that fraction of the step.
 static cp_impact impact_of(const cp_detector_scene *scene, const cp_vehicle_motion *const motion[2],
-                           double fraction, bool after_jump)
+                           double fraction)
 {
     // Bodies at first touch, the smaller id first, so that nothing depends on SUMO's order.
     cp_vehicle_state state[2];
@@ -135,8 +231,7 @@ static cp_impact impact_of(const cp_detector_scene *scene, const cp_vehicle_moti
     cp_touch touch_by_role = {touch.point_m, {touch.side[a], touch.side[1 - a]}};
     cp_impact impact = {.time_s = scene->time_s - (1.0 - fraction) * scene->step_length_s,
                         .contact_m = touch.point_m,
-                        .verdict = after_jump ? CP_CONTACT_AT_INSERTION
-                                   : cp_contact_is_crash(by_role, &touch_by_role)
+                        .verdict = cp_contact_is_crash(by_role, &touch_by_role)
                                        ? CP_CONTACT_CONFIRMED
                                        : CP_CONTACT_GRAZE};
     for (int role = 0; role < 2; role++) {
@@ -166,9 +261,8 @@ static cp_status report(cp_detector *detector, const cp_detector_scene *scene,
 {
     cp_status status = cp_array_reserve(detector->impact, detector->impact_capacity,
                                         detector->impact_count + 1, "impacts of a step", error);
-    if (status == CP_OK)
-        status =
-            cp_pair_set_add(&detector->reported, impact->vehicle[0], impact->vehicle[1], error);
+    if (status == CP_OK && impact->verdict == CP_CONTACT_CONFIRMED)
+        status = cp_pair_set_add(&detector->crashed, impact->vehicle[0], impact->vehicle[1], error);
     if (status != CP_OK)
         return status;
 
@@ -186,18 +280,29 @@ static cp_status examine(cp_detector *detector, const cp_detector_scene *scene, 
     const cp_vehicle_motion *motion[2] = {&scene->motions[pair.first],
                                           &scene->motions[pair.second]};
     uint32_t one = motion[0]->after.vehicle, other = motion[1]->after.vehicle;
-    double fraction;
-    bool after_jump;
-    if (one == other || cp_pair_set_contains(&detector->reported, one, other) ||
-        !find_touch(motion, scene->step_length_s, &fraction, &after_jump))
+    if (one == other || cp_pair_set_contains(&detector->crashed, one, other))
         return CP_OK;
+
+    // A contact that goes on is the same contact.
+    if (cp_pair_set_contains(&detector->touching, one, other))
+        return separation_after(motion) <= PARTED_M
+                   ? cp_pair_set_add(&detector->touching_now, one, other, error)
+                   : CP_OK;
+    double fraction;
+    if (!find_touch(motion, scene->step_length_s, &fraction))
+        return CP_OK;
+
+    // A new one.
     if (strcmp(id_of(scene, one), id_of(scene, other)) > 0) {
         const cp_vehicle_motion *swap = motion[0];
         motion[0] = motion[1];
         motion[1] = swap;
     }
-    cp_impact impact = impact_of(scene, motion, fraction, after_jump);
-    return report(detector, scene, &impact, error);
+    cp_impact impact = impact_of(scene, motion, fraction);
+    cp_status status = judge(scene, motion, &impact, error);
+    if (status == CP_OK)
+        status = cp_pair_set_add(&detector->touching_now, one, other, error);
+    return status == CP_OK ? report(detector, scene, &impact, error) : status;
 }
 
 cp_status cp_detector_scan(cp_detector *detector, const cp_detector_scene *scene,
@@ -222,6 +327,10 @@ cp_status cp_detector_scan(cp_detector *detector, const cp_detector_scene *scene
         status = examine(detector, scene, pair[k], error);
     if (status != CP_OK)
         return status;
+    cp_pair_set last = detector->touching;
+    detector->touching = detector->touching_now;
+    detector->touching_now = last;
+    cp_pair_set_clear(&detector->touching_now);
     *impacts = detector->impact;
     *count = detector->impact_count;
     return CP_OK;
@@ -230,6 +339,13 @@ cp_status cp_detector_scan(cp_detector *detector, const cp_detector_scene *scene
 static const char *id_in_traffic(const void *context, uint32_t vehicle)
 {
     return cp_traffic_vehicle_id(context, vehicle);
+}
+
+static cp_status relation_in_traffic(const void *context, const cp_vehicle_state *one,
+                                     const cp_vehicle_state *other, cp_road_relation *relation,
+                                     cp_error *error)
+{
+    return cp_traffic_road_relation(context, one, other, relation, error);
 }
 
 cp_status cp_detector_step(cp_detector *detector, const cp_traffic *traffic,
@@ -241,7 +357,9 @@ cp_status cp_detector_step(cp_detector *detector, const cp_traffic *traffic,
                                .vehicle_id = id_in_traffic,
                                .id_context = traffic,
                                .is_at_fault = is_at_fault,
-                               .fault_context = context};
+                               .fault_context = context,
+                               .road_relation = relation_in_traffic,
+                               .road_context = traffic};
     scene.motions = cp_traffic_motions(traffic, &scene.count);
     return cp_detector_scan(detector, &scene, impacts, count, error);
 }

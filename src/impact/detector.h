@@ -14,6 +14,11 @@ typedef struct cp_detector_scene {
     const void *id_context;
     bool (*is_at_fault)(void *context, uint32_t vehicle); /* may be NULL */
     void *fault_context;
+    /* Whether two that touch in the plane can do so on the ground; NULL: all can. */
+    cp_status (*road_relation)(const void *context, const cp_vehicle_state *one,
+                               const cp_vehicle_state *other, cp_road_relation *relation,
+                               cp_error *error);
+    const void *road_context;
 } cp_detector_scene;
 
 /* cp_detector_step (impact.h) on a scene. */

@@ -8,12 +8,37 @@
 
 /* Detection of vehicle-vehicle crashes in moving traffic. */
 
-/* Why a contact of rectangles is not a crash. X(name, text). */
+/* Why a contact of rectangles is not a crash. X(name, text).
+ *
+ * graze: from the state at first touch they do not go deep (confirmation.h).
+ *
+ * overlap_at_insertion: SUMO set one down on the other (insertion, teleport).
+ *
+ * lane_change_jump: SUMO moved one sideways onto the other within a step.
+ *
+ * impossible_motion: one slides sideways or turns as no vehicle can (cp_motion_is_impossible): SUMO
+ * lays rectangles along every kink of a lane.
+ *
+ * clipped_waiting: one of them stands, less than half a width lies in the other's way, and no
+ * driver error is at work on either: SUMO's junctions leave corners of waiting cars in the way.
+ *
+ * long_vehicle_turning: only the part of a vehicle longer than 9 m that is more than 6 m behind its
+ * front is touched, while it turns or its rear is still in a junction: SUMO's rigid rectangle is
+ * not where a bus's tail or a trailer would be.
+ *
+ * no_common_road: their roads cross or run side by side without meeting.
+ *
+ * other_level: one passes over the other. */
 #define CP_CONTACT_VERDICTS(X)                                                                     \
     X(CP_CONTACT_CONFIRMED, "confirmed")                                                           \
     X(CP_CONTACT_GRAZE, "graze")                                                                   \
     X(CP_CONTACT_AT_INSERTION, "overlap_at_insertion")                                             \
-    X(CP_CONTACT_DIFFERENT_LEVEL, "no_common_road")
+    X(CP_CONTACT_LANE_CHANGE_JUMP, "lane_change_jump")                                             \
+    X(CP_CONTACT_IMPOSSIBLE_MOTION, "impossible_motion")                                           \
+    X(CP_CONTACT_CLIPPED_WAITING, "clipped_waiting")                                               \
+    X(CP_CONTACT_ROADS_APART, "no_common_road")                                                    \
+    X(CP_CONTACT_OTHER_LEVEL, "other_level")                                                       \
+    X(CP_CONTACT_LONG_TURNING, "long_vehicle_turning")
 
 typedef enum cp_contact_verdict {
 #define CP_CONTACT_VERDICT_NAME(name, text) name,
@@ -42,8 +67,9 @@ CP_MUST_CHECK cp_status cp_detector_create(cp_detector **detector, cp_error *err
 void cp_detector_destroy(cp_detector *detector);
 
 /* Contacts that began in the step just made, ordered by time, then by the ids of the vehicles
- * (byte order). Each pair is reported once, while it stays in contact and ever after. The array is
- * the detector's, valid until the next call. Roles: a is a vehicle whose front is struck; if that
+ * (byte order). A pair in contact is reported once; when it has parted (0.1 m) its next touch is a
+ * new contact, but a pair whose crash was confirmed is never reported again. The array is the
+ * detector's, valid until the next call. Roles: a is a vehicle whose front is struck; if that
  * holds for both or neither, is_at_fault (may be NULL) decides, else the smaller id. */
 CP_MUST_CHECK cp_status cp_detector_step(cp_detector *detector, const cp_traffic *traffic,
                                          bool (*is_at_fault)(void *context, uint32_t vehicle),

@@ -2,6 +2,7 @@
 #include "impact/pair_set.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 // The smaller number is the upper half, so the entry is never 0: two different numbers.
 static uint64_t entry_of(uint32_t one, uint32_t other)
@@ -56,6 +57,13 @@ cp_status cp_pair_set_add(cp_pair_set *set, uint32_t one, uint32_t other, cp_err
     set->pair_count += set->slot[k] == 0;
     set->slot[k] = entry;
     return CP_OK;
+}
+
+void cp_pair_set_clear(cp_pair_set *set)
+{
+    if (set->pair_count > 0)
+        memset(set->slot, 0, set->slot_count * sizeof *set->slot);
+    set->pair_count = 0;
 }
 
 void cp_pair_set_destroy(cp_pair_set *set)

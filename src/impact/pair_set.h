@@ -19,6 +19,7 @@ bool cp_pair_set_contains(const cp_pair_set *set, uint32_t one, uint32_t other);
 /* Adding a pair again is fine; one and other differ. Error: CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_pair_set_add(cp_pair_set *set, uint32_t one, uint32_t other,
                                         cp_error *error);
+void cp_pair_set_clear(cp_pair_set *set); /* forget all, keep the memory */
 void cp_pair_set_destroy(cp_pair_set *set);
 
 #endif

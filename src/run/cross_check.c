@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/cross_check.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,9 +28,10 @@ static cp_status append(cp_cross_check_pair **pairs, size_t *count, cp_cross_che
 }
 
 cp_status cp_cross_check_add_contact(cp_cross_check *check, uint32_t vehicle_1, uint32_t vehicle_2,
-                                     const char *found_as, cp_error *error)
+                                     const char *found_as, double time_s, cp_error *error)
 {
     cp_cross_check_pair pair = make_pair(vehicle_1, vehicle_2);
+    pair.time_s = time_s;
     pair.found_as = found_as;
     return append(&check->ours, &check->our_count, pair, error);
 }
@@ -62,16 +64,44 @@ static int compare_pairs(const void *left, const void *right)
     return a->high < b->high ? -1 : a->high > b->high;
 }
 
+// Of our contacts of one pair, [from, ...) in the sorted list: the crash, else the nearest in time.
+static const char *best_of(const cp_cross_check *check, size_t from,
+                           const cp_cross_check_pair *report)
+{
+    const cp_cross_check_pair *best = &check->ours[from];
+    for (size_t k = from; k < check->our_count && compare_pairs(&check->ours[k], report) == 0;
+         k++) {
+        if (strcmp(check->ours[k].found_as, "crash") == 0)
+            return check->ours[k].found_as;
+        if (fabs(check->ours[k].time_s - report->time_s) < fabs(best->time_s - report->time_s))
+            best = &check->ours[k];
+    }
+    return best->found_as;
+}
+
+// First of our contacts that does not come before the pair.
+static size_t lower_bound(const cp_cross_check *check, const cp_cross_check_pair *pair)
+{
+    size_t low = 0, high = check->our_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (compare_pairs(&check->ours[middle], pair) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 void cp_cross_check_match(cp_cross_check *check)
 {
     if (check->our_count > 0)
         qsort(check->ours, check->our_count, sizeof *check->ours, compare_pairs);
     for (size_t k = 0; k < check->sumo_count; k++) {
-        const cp_cross_check_pair *ours = NULL;
-        if (check->our_count > 0)
-            ours = bsearch(&check->sumo[k], check->ours, check->our_count, sizeof *check->ours,
-                           compare_pairs);
-        check->sumo[k].found_as = ours != NULL ? ours->found_as : "no_contact";
+        cp_cross_check_pair *report = &check->sumo[k];
+        size_t from = lower_bound(check, report);
+        bool is_ours = from < check->our_count && compare_pairs(&check->ours[from], report) == 0;
+        report->found_as = is_ours ? best_of(check, from, report) : "no_contact";
     }
 }
 

@@ -14,7 +14,7 @@
 
 typedef struct cp_cross_check_pair {
     uint32_t low, high;        /* vehicle numbers in order */
-    double time_s;             /* first report */
+    double time_s;             /* ours: first touch; SUMO's: first report */
     const char *found_as;      /* ours: what became of the contact; SUMO's: NULL until matched */
     uint32_t collider, victim; /* SUMO's only: as first reported */
     char *type;
@@ -28,15 +28,16 @@ typedef struct cp_cross_check {
     size_t sumo_count;
 } cp_cross_check;
 
-/* One of our contacts; found_as is static text ("crash" or a verdict). */
+/* One of our contacts; found_as is static text ("crash" or a verdict). A pair may have several. */
 CP_MUST_CHECK cp_status cp_cross_check_add_contact(cp_cross_check *check, uint32_t vehicle_1,
                                                    uint32_t vehicle_2, const char *found_as,
-                                                   cp_error *error);
+                                                   double time_s, cp_error *error);
 /* One report of SUMO; repetitions are fine. */
 CP_MUST_CHECK cp_status cp_cross_check_add_report(cp_cross_check *check, uint32_t collider,
                                                   uint32_t victim, const char *type, double time_s,
                                                   cp_error *error);
-/* Set found_as of all of SUMO's pairs: our contact of the same pair, else "no_contact". */
+/* Set found_as of all of SUMO's pairs: our contact of the same pair (the crash if there is one,
+ * else the contact nearest in time), else "no_contact". */
 void cp_cross_check_match(cp_cross_check *check);
 void cp_cross_check_destroy(cp_cross_check *check);
 

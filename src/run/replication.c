@@ -141,7 +141,7 @@ static cp_status take_impact(replication_run *run, const cp_impact *impact, cp_e
                                                : record_contact(run, impact, found_as, error);
     if (status == CP_OK)
         status = cp_cross_check_add_contact(&run->check, impact->vehicle[0], impact->vehicle[1],
-                                            found_as, error);
+                                            found_as, impact->time_s, error);
     for (int role = 0; status == CP_OK && role < 2; role++)
         if (impact->verdict == CP_CONTACT_CONFIRMED && !has_crashed(run, impact->vehicle[role]))
             status = remember_crashed(run, impact->vehicle[role], error);

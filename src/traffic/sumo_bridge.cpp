@@ -2,9 +2,11 @@
 #include "traffic/sumo_bridge.h"
 
 #include "core/units.h"
+#include "traffic/road_network.h"
 
 #include <libsumo/libsumo.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <exception>
@@ -62,6 +64,15 @@ struct Bridge {
     std::vector<uint64_t> seen_in_step; // by vehicle number
     uint64_t step = 0;
     std::vector<cp_sumo_collision> collisions;
+    cp_road_network *roads = nullptr; // read when first asked for; lanes by number
+
+    Bridge() = default;
+    Bridge(const Bridge &) = delete;
+    Bridge &operator=(const Bridge &) = delete;
+    ~Bridge()
+    {
+        cp_road_network_destroy(roads);
+    }
 };
 
 // libsumo keeps one simulation a process, so the bridge keeps one record.
@@ -188,7 +199,9 @@ std::vector<std::string> command(const char *sumocfg, uint64_t seed, double step
     std::ostringstream step;
     step.precision(17);
     step << step_length_s;
-    const char *const ours[] = {"--no-step-log",
+    const char *const ours[] = {"--gui-settings-file", // of sumo-gui, may be missing
+                                "",
+                                "--no-step-log",
                                 "true",
                                 "--duration-log.disable",
                                 "true",
@@ -233,7 +246,8 @@ void start(const char *sumocfg, uint64_t seed, double step_length_s, const char 
         libsumo::Simulation::start(words);
     }
     for (const std::string &word : words)
-        bridge->command_line += (bridge->command_line.empty() ? "" : " ") + word;
+        bridge->command_line +=
+            (bridge->command_line.empty() ? "" : " ") + (word.empty() ? "''" : word);
 }
 
 uint32_t number_type(const std::string &type)
@@ -256,7 +270,7 @@ double yaw_of_sumo_angle(double angle_deg)
 bool read_vehicle(const std::string &id, cp_vehicle_state *state)
 {
     using libsumo::Vehicle;
-    const libsumo::TraCIPosition position = Vehicle::getPosition(id);
+    const libsumo::TraCIPosition position = Vehicle::getPosition(id, true);
     if (position.x <= -1e9 || position.y <= -1e9)
         return false;
     state->vehicle = bridge->vehicles.number(id);
@@ -264,6 +278,7 @@ bool read_vehicle(const std::string &id, cp_vehicle_state *state)
     state->lane = bridge->lanes.number(Vehicle::getLaneID(id));
     state->front_x_m = position.x;
     state->front_y_m = position.y;
+    state->elevation_m = position.z;
     state->yaw_rad = yaw_of_sumo_angle(Vehicle::getAngle(id));
     state->speed_m_s = Vehicle::getSpeed(id);
     state->acceleration_m_s2 = Vehicle::getAcceleration(id);
@@ -297,6 +312,109 @@ void step()
     bridge->departed.clear();
     for (const std::string &id : libsumo::Simulation::getDepartedIDList())
         bridge->departed.push_back(bridge->vehicles.number(id));
+}
+
+// Junction of a lane inside one (SUMO's name ":junction_link_lane"); "" for a lane of an edge.
+std::string junction_of(const std::string &lane)
+{
+    if (lane.empty() || lane[0] != ':')
+        return "";
+    const size_t edge_end = lane.rfind('_');
+    const size_t end = lane.rfind('_', edge_end - 1);
+    return lane.substr(1, end - 1);
+}
+
+// All lanes and connections of the network, lanes under their numbers.
+cp_status read_roads(cp_error *error)
+{
+    using libsumo::Lane;
+    const std::vector<std::string> ids = Lane::getIDList();
+    for (const std::string &id : ids)
+        bridge->lanes.number(id);
+    const size_t count = bridge->lanes.size();
+    std::vector<std::string> edges(count), junctions(count);
+    std::vector<cp_road_lane> lanes(count, {"", nullptr, 0.0, 0.0, 0.0, 0.0, 0.0});
+    std::vector<cp_road_connection> connections;
+    for (const std::string &id : ids) {
+        const uint32_t number = bridge->lanes.number(id);
+        const auto shape = Lane::getShape(id).value;
+        edges[number] = Lane::getEdgeID(id);
+        junctions[number] = junction_of(id);
+        const bool is_inside = !junctions[number].empty();
+        lanes[number] = {edges[number].c_str(), is_inside ? junctions[number].c_str() : nullptr,
+                         Lane::getLength(id),   shape.front().x,
+                         shape.front().y,       shape.back().x,
+                         shape.back().y};
+        if (is_inside)
+            continue;
+        for (const libsumo::TraCIConnection &link : Lane::getLinks(id))
+            connections.push_back({number, bridge->lanes.number(link.approachedLane),
+                                   link.approachedInternal.empty()
+                                       ? CP_ROAD_NONE
+                                       : bridge->lanes.number(link.approachedInternal)});
+    }
+    return cp_road_network_create(lanes.data(), lanes.size(), connections.data(),
+                                  connections.size(), &bridge->roads, error);
+}
+
+using Points = std::vector<libsumo::TraCIPosition>;
+
+double side_of(const libsumo::TraCIPosition &a, const libsumo::TraCIPosition &b,
+               const libsumo::TraCIPosition &point)
+{
+    return (b.x - a.x) * (point.y - a.y) - (b.y - a.y) * (point.x - a.x);
+}
+
+bool lines_cross(const Points &one, const Points &other)
+{
+    for (size_t k = 1; k < one.size(); k++)
+        for (size_t i = 1; i < other.size(); i++) {
+            const auto &a = one[k - 1], &b = one[k], &c = other[i - 1], &d = other[i];
+            if (side_of(a, b, c) * side_of(a, b, d) < 0 && side_of(c, d, a) * side_of(c, d, b) < 0)
+                return true;
+        }
+    return false;
+}
+
+bool contains(const std::vector<std::string> &list, const std::string &word)
+{
+    return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+// Two lanes inside one junction that has right-of-way rules: where lines cross and the rules see no
+// conflict, one passes over the other.
+bool pass_over(const std::string &one, const std::string &other)
+{
+    using libsumo::Lane;
+    if (junction_of(one).empty() || junction_of(one) != junction_of(other))
+        return false;
+    const auto foes_of_one = Lane::getInternalFoes(one),
+               foes_of_other = Lane::getInternalFoes(other);
+    if (foes_of_one.empty() && foes_of_other.empty())
+        return false; // no rules here, as at an unregulated junction
+    return !contains(foes_of_one, other) && !contains(foes_of_other, one) &&
+           lines_cross(Lane::getShape(one).value, Lane::getShape(other).value);
+}
+
+cp_status relate(const cp_vehicle_state *one, const cp_vehicle_state *other,
+                 cp_road_relation *relation, cp_error *error)
+{
+    const double level_m = 2.5; // less than a bridge is high, more than a ramp climbs over a truck
+    const double margin_m = 10.0; // movement in a step, stop lines set back
+    if (!bridge->roads) {
+        cp_status status = read_roads(error);
+        if (status != CP_OK)
+            return status;
+    }
+    const double reach_m = std::max(one->length_m, other->length_m) + margin_m;
+    const double distance_m = cp_road_distance_m(bridge->roads, {one->lane, one->lane_position_m},
+                                                 {other->lane, other->lane_position_m}, reach_m);
+    if (!(distance_m <= reach_m))
+        *relation = CP_ROADS_APART;
+    else if (std::fabs(one->elevation_m - other->elevation_m) > level_m ||
+             pass_over(bridge->lanes.text(one->lane), bridge->lanes.text(other->lane)))
+        *relation = CP_ROADS_OTHER_LEVEL;
+    return CP_OK;
 }
 
 // A command to one vehicle by its id.
@@ -417,6 +535,17 @@ cp_status sumo_bridge_collisions(const cp_sumo_collision **collisions, size_t *c
     *collisions = bridge->collisions.data();
     *count = bridge->collisions.size();
     return CP_OK;
+}
+
+cp_status sumo_bridge_road_relation(const cp_vehicle_state *one, const cp_vehicle_state *other,
+                                    cp_road_relation *relation, cp_error *error)
+{
+    *relation = CP_ROADS_MEET;
+    cp_status status = need_running(error), answer = CP_OK;
+    if (status == CP_OK)
+        status = guarded("roads", CP_TRAFFIC_FAILED, error,
+                         [&] { answer = relate(one, other, relation, error); });
+    return status != CP_OK ? status : answer;
 }
 
 const char *sumo_bridge_vehicle_id(uint32_t vehicle)

@@ -35,6 +35,7 @@ typedef struct cp_vehicle_state {
     uint32_t lane;    /* number, see sumo_bridge_lane_id */
     double front_x_m;
     double front_y_m;
+    double elevation_m; /* 0 where the network is flat */
     double yaw_rad;
     double speed_m_s; /* forward */
     double acceleration_m_s2;
@@ -49,6 +50,16 @@ typedef struct cp_sumo_collision {
     uint32_t victim;
     const char *type; /* "collision", "frontal", "junction", ... */
 } cp_sumo_collision;
+
+/* How the roads of two vehicles lie to each other. */
+typedef enum cp_road_relation {
+    CP_ROADS_MEET,        /* same road (either direction), or one junction, within the longer
+                             vehicle's length and a few metres */
+    CP_ROADS_APART,       /* no way that short from one to the other along the roads: they run side
+                             by side or cross without meeting */
+    CP_ROADS_OTHER_LEVEL, /* more than 2.5 m of elevation between them, or lanes that cross inside
+                             one junction without being foes there */
+} cp_road_relation;
 
 /* Start a simulation. options: option_count further SUMO command line words
  * ("--lateral-resolution", "0.8"), which override the configuration; the bridge appends
@@ -79,6 +90,12 @@ const char *sumo_bridge_command_line(void);
 /* SUMO's own collisions of the last step. Valid until the next step. */
 CP_MUST_CHECK cp_status sumo_bridge_collisions(const cp_sumo_collision **collisions, size_t *count,
                                                cp_error *error);
+
+/* Whether two vehicles that touch in the plane can do so on the ground. The network is read at the
+ * first question (milliseconds for a town). */
+CP_MUST_CHECK cp_status sumo_bridge_road_relation(const cp_vehicle_state *one,
+                                                  const cp_vehicle_state *other,
+                                                  cp_road_relation *relation, cp_error *error);
 
 /* Names; "" for a number never given out. */
 const char *sumo_bridge_vehicle_id(uint32_t vehicle);

@@ -186,6 +186,16 @@ const uint32_t *cp_traffic_departed(const cp_traffic *traffic, size_t *count)
     return traffic->departed;
 }
 
+cp_status cp_traffic_road_relation(const cp_traffic *traffic, const cp_vehicle_state *one,
+                                   const cp_vehicle_state *other, cp_road_relation *relation,
+                                   cp_error *error)
+{
+    *relation = CP_ROADS_MEET;
+    if (traffic->source->road_relation == NULL)
+        return CP_OK;
+    return traffic->source->road_relation(one, other, relation, error);
+}
+
 const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle)
 {
     return traffic->source->vehicle_id(vehicle);

@@ -31,6 +31,9 @@ typedef struct cp_traffic_source {
     cp_status (*speed_mode)(uint32_t vehicle, int *mode, cp_error *error);
     cp_status (*set_parameter)(uint32_t vehicle, const char *key, const char *value,
                                cp_error *error);
+    /* May be NULL: all roads meet. */
+    cp_status (*road_relation)(const cp_vehicle_state *one, const cp_vehicle_state *other,
+                               cp_road_relation *relation, cp_error *error);
     void (*stop)(void);
 } cp_traffic_source;
 
@@ -68,6 +71,11 @@ const cp_vehicle_motion *cp_traffic_motions(const cp_traffic *traffic, size_t *c
 const cp_vehicle_motion *cp_traffic_motion_of(const cp_traffic *traffic, uint32_t vehicle);
 /* Vehicles inserted in the last step, in SUMO's order; valid until the next step. */
 const uint32_t *cp_traffic_departed(const cp_traffic *traffic, size_t *count);
+/* Whether two vehicles that touch in the plane can do so on the ground (sumo_bridge.h). */
+CP_MUST_CHECK cp_status cp_traffic_road_relation(const cp_traffic *traffic,
+                                                 const cp_vehicle_state *one,
+                                                 const cp_vehicle_state *other,
+                                                 cp_road_relation *relation, cp_error *error);
 const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle);
 /* Where to send commands for the coming step. */
 const cp_traffic_source *cp_traffic_commands(const cp_traffic *traffic);

@@ -12,6 +12,7 @@ static const cp_traffic_source SUMO = {
     .set_speed_mode = sumo_bridge_set_speed_mode,
     .speed_mode = sumo_bridge_speed_mode,
     .set_parameter = sumo_bridge_set_parameter,
+    .road_relation = sumo_bridge_road_relation,
     .stop = sumo_bridge_stop,
 };
 

@@ -94,12 +94,54 @@ static void a_constant_turn_follows_its_circle(void **state)
     }
 }
 
+static void what_lies_in_the_way_is_measured_across_the_heading(void **state)
+{
+    (void)state;
+    cp_rectangle moving = {.length_m = 12.0, .width_m = 2.5};
+    cp_rectangle standing = {.centre_m = {20.0, 1.85}, .length_m = 4.5, .width_m = 1.8};
+    assert_near(cp_width_in_way_m(&moving, &standing), 0.3, 1e-12);
+    standing.yaw_rad = CP_PI / 2; // its length of 4.5 m across
+    assert_near(cp_width_in_way_m(&moving, &standing), 1.65, 1e-12);
+    standing.centre_m.y = 4.0;
+    assert_true(cp_width_in_way_m(&moving, &standing) < 0.0);
+}
+
+static void a_vehicle_that_slides_or_spins_is_no_vehicle(void **state)
+{
+    (void)state;
+    cp_touching_body car = {.rectangle = {.length_m = 4.5, .width_m = 1.8},
+                            .front_velocity_m_s = {10.0, 0.0}};
+    assert_false(cp_motion_is_impossible(&car));
+    // Turning on a circle of 6 m: the front moves to the inside by half the length.
+    car.front_velocity_m_s = (cp_vec2){6.0, 2.25};
+    car.yaw_rate_rad_s = 1.0;
+    assert_false(cp_motion_is_impossible(&car));
+    car.yaw_rate_rad_s = -1.0;
+    assert_true(cp_motion_is_impossible(&car));
+    // A lane change at 1 m/s; sideways at 4.
+    car = (cp_touching_body){.rectangle = {.length_m = 4.5, .width_m = 1.8},
+                             .front_velocity_m_s = {3.0, 1.0}};
+    assert_false(cp_motion_is_impossible(&car));
+    car.front_velocity_m_s = (cp_vec2){8.0, 4.0};
+    assert_true(cp_motion_is_impossible(&car));
+    // A bus that turns about its own middle; a car that stands.
+    car = (cp_touching_body){.rectangle = {.length_m = 12.0, .width_m = 2.5},
+                             .front_velocity_m_s = {3.0, 2.0},
+                             .yaw_rate_rad_s = 1.0};
+    assert_true(cp_motion_is_impossible(&car));
+    car =
+        (cp_touching_body){.rectangle = {.length_m = 4.5, .width_m = 1.8}, .yaw_rate_rad_s = 1e-6};
+    assert_false(cp_motion_is_impossible(&car));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_rear_impact_counts_from_400_mm_in_half_a_second),
         cmocka_unit_test(front_on_front_counts_from_a_tenth_of_the_width),
         cmocka_unit_test(a_clipped_waiting_car_is_a_graze),
+        cmocka_unit_test(what_lies_in_the_way_is_measured_across_the_heading),
+        cmocka_unit_test(a_vehicle_that_slides_or_spins_is_no_vehicle),
         cmocka_unit_test(a_constant_turn_follows_its_circle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

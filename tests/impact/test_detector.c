@@ -206,12 +206,150 @@ static void an_instant_lane_change_onto_another_car_did_not_crash(void **state)
     assert_int_equal(cp_detector_create(&detector, NULL), CP_OK);
     assert_int_equal(cp_detector_scan(detector, &scene, &impact, &count, NULL), CP_OK);
     assert_int_equal(count, 1);
-    assert_int_equal(impact[0].verdict, CP_CONTACT_AT_INSERTION);
+    assert_int_equal(impact[0].verdict, CP_CONTACT_LANE_CHANGE_JUMP);
     assert_near(impact[0].front_velocity_m_s[1].y, 0.0, 1e-12);
     cp_detector_destroy(detector);
 }
 
-static void a_pair_is_reported_once_for_ever(void **state)
+/* A pair that creeps together (graze), parts, and meets again: one row a time and distance. */
+static size_t creep_and_crash(double parted_m, cp_impact found[4])
+{
+    // b stands; a's front goes 2 cm into it at 0.1 m/s, back to parted_m before it, then in at 10.
+    const double dt_s = 0.1;
+    double front_m = -0.05, speed_m_s = 0.1;
+    size_t count = 0;
+    cp_detector *detector;
+    assert_int_equal(cp_detector_create(&detector, NULL), CP_OK);
+    drive standing = {.x_m = 4.5};
+    for (int step = 1; step <= 200; step++) {
+        if (front_m > 0.02)
+            speed_m_s = -0.1;
+        if (speed_m_s < 0.0 && front_m < -parted_m)
+            speed_m_s = 10.0;
+        drive creeping = {.x_m = front_m, .speed_m_s = speed_m_s};
+        cp_vehicle_motion motion[2] = {drive_motion(&creeping, 0, dt_s, dt_s),
+                                       drive_motion(&standing, 1, dt_s, dt_s)};
+        front_m += speed_m_s * dt_s;
+        cp_detector_scene scene = {.motions = motion,
+                                   .count = 2,
+                                   .step_length_s = dt_s,
+                                   .time_s = step * dt_s,
+                                   .vehicle_id = name_of,
+                                   .id_context = &ALPHABETIC};
+        const cp_impact *impact;
+        size_t impact_count;
+        assert_int_equal(cp_detector_scan(detector, &scene, &impact, &impact_count, NULL), CP_OK);
+        for (size_t k = 0; k < impact_count && count < 4; k++)
+            found[count++] = impact[k];
+        if (front_m > 3.0)
+            break;
+    }
+    cp_detector_destroy(detector);
+    return count;
+}
+
+static void after_a_graze_a_pair_that_parted_can_crash(void **state)
+{
+    (void)state;
+    cp_impact found[4];
+    assert_int_equal(creep_and_crash(0.2, found), 2);
+    assert_int_equal(found[0].verdict, CP_CONTACT_GRAZE);
+    assert_int_equal(found[1].verdict, CP_CONTACT_CONFIRMED);
+    assert_near(found[1].state[0].speed_m_s, 10.0, 1e-9);
+
+    // Not parted: it is still the first contact.
+    assert_int_equal(creep_and_crash(0.03, found), 1);
+}
+
+static void a_corner_of_a_waiting_car_is_clipped_unless_somebody_errs(void **state)
+{
+    (void)state;
+    // A bus passes a standing, turned car whose corner lies 0.5 m in its way; and 1.3 m.
+    static const double Y_M[] = {1.2, 0.4};
+    for (int k = 0; k < 2; k++) {
+        drive car[2] = {{.x_m = 20.0, .y_m = Y_M[k], .yaw_rad = CP_PI + 0.35},
+                        {.speed_m_s = 12.0, .length_m = 12.0, .width_m = 2.5}};
+        findings found = watch(car, 2, &ALPHABETIC, 3.0, 0.1, NULL);
+        assert_int_equal(found.count, 1);
+        assert_int_equal(found.impact[0].verdict,
+                         k == 0 ? CP_CONTACT_CLIPPED_WAITING : CP_CONTACT_CONFIRMED);
+        found = watch(car, 2, &ALPHABETIC, 3.0, 0.1, all_err);
+        assert_int_equal(found.impact[0].verdict, CP_CONTACT_CONFIRMED);
+    }
+}
+
+static cp_status relation_of_test(const void *context, const cp_vehicle_state *one,
+                                  const cp_vehicle_state *other, cp_road_relation *relation,
+                                  cp_error *error)
+{
+    (void)one;
+    (void)other;
+    (void)error;
+    *relation = *(const cp_road_relation *)context;
+    return CP_OK;
+}
+
+static cp_impact watch_crossing(const cp_road_relation *relation, cp_vehicle_motion motion[2])
+{
+    cp_detector_scene scene = {.motions = motion,
+                               .count = 2,
+                               .step_length_s = 0.1,
+                               .time_s = 0.1,
+                               .vehicle_id = name_of,
+                               .id_context = &ALPHABETIC,
+                               .road_relation = relation_of_test,
+                               .road_context = relation};
+    cp_detector *detector;
+    const cp_impact *impact;
+    size_t count;
+    assert_int_equal(cp_detector_create(&detector, NULL), CP_OK);
+    assert_int_equal(cp_detector_scan(detector, &scene, &impact, &count, NULL), CP_OK);
+    assert_int_equal(count, 1);
+    cp_impact found = impact[0];
+    cp_detector_destroy(detector);
+    return found;
+}
+
+static void what_drives_over_a_bridge_hits_nobody_below(void **state)
+{
+    (void)state;
+    drive car[2] = {{.x_m = -0.5, .speed_m_s = 20.0},
+                    {.x_m = 1.9, .y_m = 2.0, .yaw_rad = CP_PI / 2, .speed_m_s = 20.0}};
+    cp_vehicle_motion motion[2] = {drive_motion(&car[0], 0, 0.1, 0.1),
+                                   drive_motion(&car[1], 1, 0.1, 0.1)};
+    static const struct {
+        cp_road_relation relation;
+        cp_contact_verdict verdict;
+    } CASE[] = {{CP_ROADS_MEET, CP_CONTACT_CONFIRMED},
+                {CP_ROADS_APART, CP_CONTACT_ROADS_APART},
+                {CP_ROADS_OTHER_LEVEL, CP_CONTACT_OTHER_LEVEL}};
+    for (int k = 0; k < 3; k++)
+        assert_int_equal(watch_crossing(&CASE[k].relation, motion).verdict, CASE[k].verdict);
+}
+
+static void a_trailing_part_counts_where_it_follows_the_front(void **state)
+{
+    (void)state;
+    // A car drives into the flank of a 16.5 m vehicle, 15 m or 5 m behind its front.
+    static const struct {
+        double behind_m, lane_position_m;
+        cp_contact_verdict verdict;
+    } CASE[] = {{15.0, 8.0, CP_CONTACT_LONG_TURNING},
+                {15.0, 100.0, CP_CONTACT_CONFIRMED},
+                {5.0, 8.0, CP_CONTACT_CONFIRMED}};
+    for (int k = 0; k < 3; k++) {
+        drive car[2] = {{.x_m = CASE[k].behind_m, .length_m = 16.5, .width_m = 2.5},
+                        {.y_m = -1.75, .yaw_rad = CP_PI / 2, .speed_m_s = 10.0}};
+        cp_vehicle_motion motion[2] = {drive_motion(&car[0], 0, 0.1, 0.1),
+                                       drive_motion(&car[1], 1, 0.1, 0.1)};
+        motion[0].after.lane_position_m = motion[0].before.lane_position_m =
+            CASE[k].lane_position_m;
+        cp_road_relation meet = CP_ROADS_MEET;
+        assert_int_equal(watch_crossing(&meet, motion).verdict, CASE[k].verdict);
+    }
+}
+
+static void a_confirmed_pair_is_reported_once_for_ever(void **state)
 {
     (void)state;
     // c circles and runs through a standing car again and again.
@@ -492,7 +630,11 @@ int main(void)
         cmocka_unit_test(a_touch_at_walking_pace_from_behind_is_a_graze),
         cmocka_unit_test(cars_set_down_on_each_other_did_not_crash),
         cmocka_unit_test(an_instant_lane_change_onto_another_car_did_not_crash),
-        cmocka_unit_test(a_pair_is_reported_once_for_ever),
+        cmocka_unit_test(a_confirmed_pair_is_reported_once_for_ever),
+        cmocka_unit_test(after_a_graze_a_pair_that_parted_can_crash),
+        cmocka_unit_test(a_corner_of_a_waiting_car_is_clipped_unless_somebody_errs),
+        cmocka_unit_test(what_drives_over_a_bridge_hits_nobody_below),
+        cmocka_unit_test(a_trailing_part_counts_where_it_follows_the_front),
         cmocka_unit_test(neighbours_never_touch),
         cmocka_unit_test(what_swings_out_between_the_ends_of_a_step_counts),
         cmocka_unit_test(crashes_of_a_step_come_by_time_then_by_id),

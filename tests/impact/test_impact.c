@@ -165,7 +165,8 @@ static void verdicts_have_their_texts(void **state)
     assert_string_equal(cp_contact_verdict_text(CP_CONTACT_CONFIRMED), "confirmed");
     assert_string_equal(cp_contact_verdict_text(CP_CONTACT_GRAZE), "graze");
     assert_string_equal(cp_contact_verdict_text(CP_CONTACT_AT_INSERTION), "overlap_at_insertion");
-    assert_string_equal(cp_contact_verdict_text(CP_CONTACT_DIFFERENT_LEVEL), "no_common_road");
+    assert_string_equal(cp_contact_verdict_text(CP_CONTACT_ROADS_APART), "no_common_road");
+    assert_string_equal(cp_contact_verdict_text(CP_CONTACT_LONG_TURNING), "long_vehicle_turning");
 }
 
 int main(void)

@@ -29,7 +29,8 @@ CREATE TABLE merge_source (
 ) STRICT;
 
 -- Channels of a stored pulse. samples of table pulse decodes to whole multiples of the resolution,
--- exactly, in the order of number; the codec says how they are packed.
+-- exactly, in the order of number; the codec says how they are packed (src/pulse/pulse_codec.h). The
+-- SQL extension unpacks: pulse_samples(crash_id, role).
 CREATE TABLE pulse_channel (
     codec              INTEGER NOT NULL,         -- pulse.codec
     number             INTEGER NOT NULL,         -- from 0

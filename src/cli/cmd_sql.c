@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/args.h"
 #include "cli/commands.h"
+#include "core/log.h"
 #include "report/query_json.h"
 #include "store/query.h"
 
 #include <errno.h>
+#include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -45,7 +48,8 @@ static const struct argp ARGP = {
            "reads. Without: start the sqlite3 shell on it."
            "\v"
            "Tables and views are described in db/schema and db/views.sql, questions others asked "
-           "are in db/queries.\n\n"
+           "are in db/queries. The functions of the SQL extension are loaded: median, quantile, "
+           "cliffs_delta, ks_distance, olc, delta_v, peak, cfc, pulse_samples (README).\n\n"
            "Examples:\n"
            "  crashpulse sql demo.db \"SELECT * FROM olc_by_variant\"\n"
            "  crashpulse sql demo.db -f csv \"SELECT * FROM frontal_vehicle\" > cars.csv\n"
@@ -69,6 +73,35 @@ static cp_status add_row(void *context, const cp_row *row, cp_error *error)
     return CP_OK;
 }
 
+// The extension beside the running executable; "" when it is not there.
+static void find_extension(char path[PATH_MAX])
+{
+    static const char NAME[] = "crashpulse_sql.so";
+    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
+    path[length > 0 ? length : 0] = '\0';
+    char *slash = strrchr(path, '/');
+    size_t room = slash != NULL ? PATH_MAX - (size_t)(slash + 1 - path) : 0;
+    if (room > sizeof NAME)
+        memcpy(slash + 1, NAME, sizeof NAME);
+    if (room <= sizeof NAME || access(path, R_OK) != 0) {
+        cp_log_warning("%s is not beside crashpulse: its functions are missing", NAME);
+        path[0] = '\0';
+    }
+}
+
+static cp_status start_shell(const char *db_path, const char *extension, cp_error *error)
+{
+    char load[PATH_MAX + 16];
+    snprintf(load, sizeof load, ".load '%s'", extension);
+    if (extension[0] != '\0')
+        execlp("sqlite3", "sqlite3", "-header", "-column", "-cmd", load, db_path, (char *)NULL);
+    else
+        execlp("sqlite3", "sqlite3", "-header", "-column", db_path, (char *)NULL);
+    return cp_fail(error, CP_BAD_INPUT,
+                   "cannot start the sqlite3 shell (%s); install sqlite3 or give a QUERY",
+                   strerror(errno));
+}
+
 static cp_status print_query(cp_store *store, const arguments *a, cp_error *error)
 {
     cp_table table = {0};
@@ -90,13 +123,12 @@ cp_status cmd_sql(int argc, char **argv, cp_error *error)
     cp_status status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
     if (status != CP_OK)
         return status;
-    if (a.query)
+    char extension[PATH_MAX];
+    find_extension(extension);
+    if (a.query && extension[0] != '\0')
+        status = cp_store_load_extension(store, extension, error);
+    if (a.query && status == CP_OK)
         status = print_query(store, &a, error);
     cp_store_close(store);
-    if (a.query)
-        return status;
-    execlp("sqlite3", "sqlite3", "-header", "-column", a.db_path, (char *)NULL);
-    return cp_fail(error, CP_BAD_INPUT,
-                   "cannot start the sqlite3 shell (%s); install sqlite3 or give a QUERY",
-                   strerror(errno));
+    return a.query ? status : start_shell(a.db_path, extension, error);
 }

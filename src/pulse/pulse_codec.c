@@ -12,6 +12,8 @@
 #define ZSTD_LEVEL 19
 #define CFC_OF_RECORD 180.0
 #define VARINT_BYTES_MAX 10
+#define MARK_OF_CODEC_2 0xc2
+#define HEADER_BYTES_MAX (1 + 2 * VARINT_BYTES_MAX + 8)
 
 const double CP_PULSE_RESOLUTION[CP_CHANNEL_COUNT] = {
     [CP_CHANNEL_AX] = 0.1,     [CP_CHANNEL_AY] = 0.1,         [CP_CHANNEL_VX] = 0.001,
@@ -27,6 +29,29 @@ static uint64_t fold(int64_t value)
 static int64_t unfold(uint64_t value)
 {
     return (int64_t)(value >> 1) ^ -(int64_t)(value & 1);
+}
+
+static size_t write_number(uint64_t value, unsigned char *bytes)
+{
+    size_t used = 0;
+    while (value >= 0x80) {
+        bytes[used++] = (unsigned char)(value | 0x80);
+        value >>= 7;
+    }
+    bytes[used++] = (unsigned char)value;
+    return used;
+}
+
+static bool read_number(const unsigned char *bytes, size_t size, size_t *place, uint64_t *value)
+{
+    *value = 0;
+    for (int shift = 0; shift < 63 && *place < size; shift += 7) {
+        unsigned char byte = bytes[(*place)++];
+        *value |= (uint64_t)(byte & 0x7f) << shift;
+        if (byte < 0x80)
+            return true;
+    }
+    return false;
 }
 
 // ---- encoding ------------------------------------------------------------------------------
@@ -54,12 +79,7 @@ static size_t write_differences(int64_t *const steps[CP_CHANNEL_COUNT], size_t c
         cp_prediction prediction = cp_prediction_begin(CP_PULSE_CODEC, place, steps, interval_s);
         for (size_t k = 0; k < count; k++) {
             int64_t difference = steps[prediction.channel][k] - cp_prediction_next(&prediction, k);
-            uint64_t rest = fold(difference);
-            while (rest >= 0x80) {
-                bytes[used++] = (unsigned char)(rest | 0x80);
-                rest >>= 7;
-            }
-            bytes[used++] = (unsigned char)rest;
+            used += write_number(fold(difference), bytes + used);
         }
     }
     return used;
@@ -87,12 +107,27 @@ static cp_status allocate_steps(size_t count, int64_t *steps[CP_CHANNEL_COUNT], 
     return CP_OK;
 }
 
+// What a blob says of itself. Intervals are whole nanoseconds as a rule.
+static size_t write_header(size_t count, double interval_s, unsigned char header[HEADER_BYTES_MAX])
+{
+    size_t used = 0;
+    uint64_t bits = 0, interval_ns = (uint64_t)llround(interval_s * 1e9);
+    bool whole = interval_ns > 0 && (double)interval_ns / 1e9 == interval_s;
+    header[used++] = MARK_OF_CODEC_2;
+    used += write_number(count, header + used);
+    used += write_number(whole ? interval_ns : 0, header + used);
+    memcpy(&bits, &interval_s, sizeof bits);
+    for (int k = 0; !whole && k < 8; k++)
+        header[used++] = (unsigned char)(bits >> (8 * k));
+    return used;
+}
+
 cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size, cp_error *error)
 {
     size_t count = pulse->sample_count;
     int64_t *steps[CP_CHANNEL_COUNT] = {NULL};
     unsigned char *bytes = NULL;
-    void *packed = NULL;
+    unsigned char *packed = NULL;
     cp_status status = check_size((int64_t)count, pulse->sample_interval_s, error);
     if (status == CP_OK)
         status = allocate_steps(count, steps, error);
@@ -108,18 +143,19 @@ cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size, cp_e
     }
     size_t used = write_differences(steps, count, pulse->sample_interval_s, bytes);
     size_t room = ZSTD_compressBound(used);
-    packed = malloc(room);
+    packed = malloc(HEADER_BYTES_MAX + room);
     if (packed == NULL) {
         status = cp_fail_memory(error, "pulse");
         goto done;
     }
-    size_t result = ZSTD_compress(packed, room, bytes, used, ZSTD_LEVEL);
+    size_t header = write_header(count, pulse->sample_interval_s, packed);
+    size_t result = ZSTD_compress(packed + header, room, bytes, used, ZSTD_LEVEL);
     if (ZSTD_isError(result)) {
         status = cp_fail(error, CP_STORE_FAILED, "pulse: zstd: %s", ZSTD_getErrorName(result));
         goto done;
     }
     *blob = packed;
-    *size = result;
+    *size = header + result;
     packed = NULL;
 done:
     free(packed);
@@ -135,21 +171,6 @@ static cp_status fail_damaged(cp_error *error, const char *what)
     return cp_fail(error, CP_BAD_INPUT, "pulse: damaged: %s", what);
 }
 
-static bool read_difference(const unsigned char *bytes, size_t size, size_t *place,
-                            int64_t *difference)
-{
-    uint64_t value = 0;
-    for (int shift = 0; shift < 63 && *place < size; shift += 7) {
-        unsigned char byte = bytes[(*place)++];
-        value |= (uint64_t)(byte & 0x7f) << shift;
-        if (byte < 0x80) {
-            *difference = unfold(value);
-            return true;
-        }
-    }
-    return false;
-}
-
 static cp_status read_differences(int codec, const unsigned char *bytes, size_t size,
                                   int64_t *const steps[CP_CHANNEL_COUNT], size_t count,
                                   double interval_s, cp_error *error)
@@ -158,9 +179,10 @@ static cp_status read_differences(int codec, const unsigned char *bytes, size_t 
     for (size_t place = 0; place < CP_CHANNEL_COUNT; place++) {
         cp_prediction prediction = cp_prediction_begin(codec, place, steps, interval_s);
         for (size_t k = 0; k < count; k++) {
-            int64_t difference = 0;
-            if (!read_difference(bytes, size, &at, &difference))
+            uint64_t folded = 0;
+            if (!read_number(bytes, size, &at, &folded))
                 return fail_damaged(error, "ends too early");
+            int64_t difference = unfold(folded);
             // The encoder writes 32-bit steps only; anything larger would soon overflow.
             if (llabs(difference) > 8 * (int64_t)INT32_MAX)
                 return fail_damaged(error, "a value is out of range");
@@ -188,29 +210,80 @@ static cp_status decompress(const void *blob, size_t size, size_t count, unsigne
     return ZSTD_isError(*used) ? fail_damaged(error, ZSTD_getErrorName(*used)) : CP_OK;
 }
 
-cp_status cp_pulse_decode(int codec, const void *blob, size_t size, int64_t sample_count,
-                          double sample_interval_s, cp_pulse *pulse, cp_error *error)
+// Number of samples and interval that a blob of codec 2 tells of, and where its frame begins.
+static cp_status read_header(const unsigned char *blob, size_t size, int64_t *sample_count,
+                             double *interval_s, size_t *frame, cp_error *error)
+{
+    uint64_t count = 0, interval_ns = 0, bits = 0;
+    size_t at = 1;
+    if (size == 0 || blob[0] != MARK_OF_CODEC_2)
+        return fail_damaged(error, "does not begin like a pulse of codec 2");
+    if (!read_number(blob, size, &at, &count) || !read_number(blob, size, &at, &interval_ns) ||
+        (interval_ns == 0 && size - at < 8))
+        return fail_damaged(error, "ends too early");
+    *interval_s = (double)interval_ns / 1e9;
+    if (interval_ns == 0) {
+        for (int k = 0; k < 8; k++)
+            bits |= (uint64_t)blob[at++] << (8 * k);
+        memcpy(interval_s, &bits, sizeof bits);
+    }
+    *sample_count = count <= CP_PULSE_CODEC_SAMPLES_MAX ? (int64_t)count : -1;
+    *frame = at;
+    return check_size(*sample_count, *interval_s, error);
+}
+
+static cp_status decode_frame(int codec, const unsigned char *frame, size_t size, size_t count,
+                              double interval_s, cp_pulse *pulse, cp_error *error)
 {
     int64_t *steps[CP_CHANNEL_COUNT] = {NULL};
     unsigned char *bytes = NULL;
-    size_t used = 0, count = (size_t)sample_count;
-    *pulse = (cp_pulse){0};
-    if (codec < 1 || codec > CP_PULSE_CODEC)
-        return cp_fail(error, CP_BAD_INPUT, "pulse: codec %d is unknown to this program", codec);
-    cp_status status = check_size(sample_count, sample_interval_s, error);
+    size_t used = 0;
+    cp_status status = allocate_steps(count, steps, error);
     if (status == CP_OK)
-        status = allocate_steps(count, steps, error);
+        status = decompress(frame, size, count, &bytes, &used, error);
     if (status == CP_OK)
-        status = decompress(blob, size, count, &bytes, &used, error);
+        status = read_differences(codec, bytes, used, steps, count, interval_s, error);
     if (status == CP_OK)
-        status = read_differences(codec, bytes, used, steps, count, sample_interval_s, error);
-    if (status == CP_OK)
-        status = cp_pulse_create(pulse, count, sample_interval_s, error);
+        status = cp_pulse_create(pulse, count, interval_s, error);
     for (int c = 0; status == CP_OK && c < CP_CHANNEL_COUNT; c++)
         for (size_t k = 0; k < count; k++)
             pulse->channel[c][k] = (double)steps[c][k] * CP_PULSE_RESOLUTION[c];
     free(bytes);
     free(steps[0]);
+    return status;
+}
+
+cp_status cp_pulse_decode_blob(const void *blob, size_t size, cp_pulse *pulse, cp_error *error)
+{
+    const unsigned char *bytes = blob;
+    int64_t count = 0;
+    double interval_s = 0.0;
+    size_t frame = 0;
+    *pulse = (cp_pulse){0};
+    cp_status status = read_header(bytes, size, &count, &interval_s, &frame, error);
+    if (status == CP_OK)
+        status =
+            decode_frame(2, bytes + frame, size - frame, (size_t)count, interval_s, pulse, error);
+    return status;
+}
+
+cp_status cp_pulse_decode(int codec, const void *blob, size_t size, int64_t sample_count,
+                          double sample_interval_s, cp_pulse *pulse, cp_error *error)
+{
+    *pulse = (cp_pulse){0};
+    if (codec < 1 || codec > CP_PULSE_CODEC)
+        return cp_fail(error, CP_BAD_INPUT, "pulse: codec %d is unknown to this program", codec);
+    cp_status status = check_size(sample_count, sample_interval_s, error);
+    if (status != CP_OK)
+        return status;
+    if (codec == 1)
+        return decode_frame(1, blob, size, (size_t)sample_count, sample_interval_s, pulse, error);
+    status = cp_pulse_decode_blob(blob, size, pulse, error);
+    if (status == CP_OK && (pulse->sample_count != (size_t)sample_count ||
+                            pulse->sample_interval_s != sample_interval_s)) {
+        cp_pulse_destroy(pulse);
+        status = fail_damaged(error, "does not agree with sample_count and sample_interval_s");
+    }
     return status;
 }
 

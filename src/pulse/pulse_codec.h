@@ -11,7 +11,11 @@
  * resolution and predicted (pulse_prediction.h), and the differences are packed as variable-length
  * integers and compressed with zstd. Decoding gives the rounded values back exactly. Codec 1
  * predicts from the last samples; codec 2 follows velocities, displacements and yaw as unrounded
- * integrals, which leaves little more than the accelerations to pack. Resolutions are the same. */
+ * integrals, which leaves little more than the accelerations to pack. Resolutions are the same.
+ *
+ * A blob of codec 2 explains itself: byte 0xc2, number of samples, sample interval in ns (0: its
+ * eight bytes as IEEE double follow, lowest first), both as variable-length integers, then the zstd
+ * frame. Of codec 1 it is the frame alone. */
 
 #define CP_PULSE_CODEC 2 /* what is written; both are read. Column pulse.codec */
 #define CP_PULSE_CODEC_INTERVAL_S 1e-3
@@ -31,10 +35,15 @@ CP_MUST_CHECK cp_status cp_pulse_codec_record(const cp_pulse *raw, cp_pulse *rec
 CP_MUST_CHECK cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size,
                                         cp_error *error);
 
-/* Unpack. codec, sample_count and sample_interval_s stand beside the blob in the database. The
- * caller destroys the pulse. Errors: CP_BAD_INPUT for anything that no encoder wrote. */
+/* Unpack. codec, sample_count and sample_interval_s stand beside the blob in the database and must
+ * agree with what it says of itself. The caller destroys the pulse. Errors: CP_BAD_INPUT for
+ * anything that no encoder wrote. */
 CP_MUST_CHECK cp_status cp_pulse_decode(int codec, const void *blob, size_t size,
                                         int64_t sample_count, double sample_interval_s,
                                         cp_pulse *pulse, cp_error *error);
+
+/* Unpack a blob that explains itself (codec 2). Errors as above; CP_BAD_INPUT for codec 1. */
+CP_MUST_CHECK cp_status cp_pulse_decode_blob(const void *blob, size_t size, cp_pulse *pulse,
+                                             cp_error *error);
 
 #endif

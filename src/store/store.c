@@ -129,6 +129,23 @@ cp_status cp_store_integer(cp_store *store, const char *what, const char *sql, i
     return status;
 }
 
+// ---- extensions ----------------------------------------------------------------------------
+
+cp_status cp_store_load_extension(cp_store *store, const char *path, cp_error *error)
+{
+    // By this call only: SQL itself must not load anything.
+    char *message = NULL;
+    sqlite3_db_config(store->handle, SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, 1, NULL);
+    int result = sqlite3_load_extension(store->handle, path, NULL, &message);
+    sqlite3_db_config(store->handle, SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, 0, NULL);
+    cp_status status = CP_OK;
+    if (result != SQLITE_OK)
+        status = cp_fail(error, CP_IO_FAILED, "%s: cannot be loaded: %s", path,
+                         message != NULL ? message : sqlite3_errmsg(store->handle));
+    sqlite3_free(message);
+    return status;
+}
+
 // ---- transactions --------------------------------------------------------------------------
 
 cp_status cp_store_begin(cp_store *store, cp_error *error)

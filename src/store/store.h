@@ -26,6 +26,10 @@ CP_MUST_CHECK cp_status cp_store_open(const char *path, cp_store_mode mode, cp_s
 /* NULL is fine. An open transaction is rolled back. */
 void cp_store_close(cp_store *store);
 
+/* Load a SQLite extension (its functions, for queries on this connection). Errors: CP_IO_FAILED
+ * with SQLite's words. */
+CP_MUST_CHECK cp_status cp_store_load_extension(cp_store *store, const char *path, cp_error *error);
+
 const char *cp_store_path(const cp_store *store);
 
 /* One writing transaction at a time. Begin takes the write lock at once, so that what is read in

@@ -61,6 +61,14 @@ static void decodes_to_within_half_a_step(void **state)
             assert_true(fabs(back.channel[c][k] - pulse.channel[c][k]) <=
                         0.5 * CP_PULSE_RESOLUTION[c] * (1 + 1e-9));
 
+    // The blob explains itself.
+    cp_pulse alone;
+    assert_ok(cp_pulse_decode_blob(blob, size, &alone, &error), &error);
+    assert_int_equal(alone.sample_count, pulse.sample_count);
+    assert_true(alone.sample_interval_s == 0.001);
+    assert_memory_equal(alone.channel[0], back.channel[0], pulse.sample_count * sizeof(double));
+    cp_pulse_destroy(&alone);
+
     // What was rounded once stays: the decoded pulse packs to the same bytes and values.
     assert_ok(cp_pulse_encode(&back, &second, &second_size, &error), &error);
     assert_int_equal(second_size, size);
@@ -109,6 +117,27 @@ static void integrals_cost_little(void **state)
     assert_true(size <= 500);
     free(blob);
     cp_pulse_destroy(&whole);
+}
+
+static void odd_intervals_are_kept(void **state)
+{
+    (void)state;
+    const double intervals_s[] = {1.0 / 3000, 0.00048828125, 1e-12, 0.25};
+    for (size_t k = 0; k < 4; k++) {
+        cp_pulse pulse, back;
+        cp_error error = {0};
+        void *blob = NULL;
+        size_t size = 0;
+        assert_ok(cp_pulse_create(&pulse, 3, intervals_s[k], &error), &error);
+        assert_ok(cp_pulse_encode(&pulse, &blob, &size, &error), &error);
+        assert_ok(cp_pulse_decode_blob(blob, size, &back, &error), &error);
+        assert_true(back.sample_interval_s == intervals_s[k]);
+        cp_pulse_destroy(&pulse);
+        assert_int_equal(cp_pulse_decode(2, blob, size, 3, 0.001, &pulse, &error), CP_BAD_INPUT);
+        assert_non_null(strstr(error.text, "does not agree"));
+        free(blob);
+        cp_pulse_destroy(&back);
+    }
 }
 
 static void two_pulses_fit_two_kilobytes(void **state)
@@ -209,6 +238,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(decodes_to_within_half_a_step),
+        cmocka_unit_test(odd_intervals_are_kept),
         cmocka_unit_test(integrals_cost_little),
         cmocka_unit_test(two_pulses_fit_two_kilobytes),
         cmocka_unit_test(record_is_at_one_kilohertz),

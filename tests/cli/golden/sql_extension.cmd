@@ -1,0 +1,1 @@
+$crashpulse sql $db -f csv "SELECT variant, round(median(olc_g, censored), 9) = round((SELECT olc_median_g FROM olc_by_variant AS o WHERE o.variant = f.variant), 9) AS same FROM frontal_vehicle AS f WHERE olc_status <> 'simulation_failed' GROUP BY variant ORDER BY variant"

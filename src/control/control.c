@@ -11,6 +11,7 @@
 const cp_control_type *const CP_CONTROL_TYPE[] = {
     &CP_CONTROL_FAILED_TO_SEE,
     &CP_CONTROL_RISKY_OVERTAKING,
+    &CP_CONTROL_LANE_DRIFT,
     &CP_CONTROL_AEB,
 };
 const size_t CP_CONTROL_TYPE_COUNT = sizeof CP_CONTROL_TYPE / sizeof *CP_CONTROL_TYPE;

@@ -4,12 +4,15 @@
 
 #include "control/control.h"
 
-/* The rows of CP_CONTROL_TYPE, each defined in the file of its name. */
+/* The rows of CP_CONTROL_TYPE, each defined in the file of its name (driver errors in
+ * driver_error/). */
 
 /* Looked but failed to see: a driver overlooks certain others at junctions. */
 extern const cp_control_type CP_CONTROL_FAILED_TO_SEE;
 /* A share of drivers overtakes with too little room. */
 extern const cp_control_type CP_CONTROL_RISKY_OVERTAKING;
+/* Inattention: the car drifts off its lane. */
+extern const cp_control_type CP_CONTROL_LANE_DRIFT;
 /* Automatic emergency braking. */
 extern const cp_control_type CP_CONTROL_AEB;
 

@@ -54,6 +54,12 @@ struct Size {
     double width_m;
 };
 
+// A speed commanded before the coming step.
+struct SpeedCommand {
+    uint32_t vehicle;
+    double speed_m_s;
+};
+
 struct Bridge {
     bool running = false;
     std::string command_line;
@@ -64,7 +70,8 @@ struct Bridge {
     std::vector<uint64_t> seen_in_step; // by vehicle number
     uint64_t step = 0;
     std::vector<cp_sumo_collision> collisions;
-    cp_road_network *roads = nullptr; // read when first asked for; lanes by number
+    std::vector<SpeedCommand> speed_commands; // since the last step
+    cp_road_network *roads = nullptr;         // read when first asked for; lanes by number
 
     Bridge() = default;
     Bridge(const Bridge &) = delete;
@@ -275,7 +282,9 @@ bool read_vehicle(const std::string &id, cp_vehicle_state *state)
         return false;
     state->vehicle = bridge->vehicles.number(id);
     state->type = number_type(Vehicle::getTypeID(id));
-    state->lane = bridge->lanes.number(Vehicle::getLaneID(id));
+    const std::string lane = Vehicle::getLaneID(id);
+    state->lane = bridge->lanes.number(lane);
+    state->is_in_junction = !lane.empty() && lane[0] == ':';
     state->front_x_m = position.x;
     state->front_y_m = position.y;
     state->elevation_m = position.z;
@@ -291,6 +300,7 @@ bool read_vehicle(const std::string &id, cp_vehicle_state *state)
 void step()
 {
     libsumo::Simulation::step();
+    bridge->speed_commands.clear();
     bridge->step++;
     bridge->present_before.swap(bridge->present);
     bridge->present.clear();
@@ -429,6 +439,22 @@ cp_status command_vehicle(const char *what, uint32_t vehicle, cp_error *error, C
         return cp_fail(error, CP_TRAFFIC_FAILED, "%s: there is no vehicle number %u", what,
                        static_cast<unsigned>(vehicle));
     return guarded(what, CP_TRAFFIC_FAILED, error, [&] { call(*id); });
+}
+
+// Whether a command is the one to hold among those before the coming step.
+bool holds(uint32_t vehicle, double speed_m_s)
+{
+    for (SpeedCommand &earlier : bridge->speed_commands) {
+        if (earlier.vehicle != vehicle)
+            continue;
+        if (speed_m_s < 0.0 || speed_m_s >= earlier.speed_m_s)
+            return false;
+        earlier.speed_m_s = speed_m_s;
+        return true;
+    }
+    if (speed_m_s >= 0.0)
+        bridge->speed_commands.push_back({vehicle, speed_m_s});
+    return true;
 }
 
 } // namespace
@@ -596,7 +622,8 @@ cp_status sumo_bridge_remove(uint32_t vehicle, cp_error *error)
 cp_status sumo_bridge_set_speed(uint32_t vehicle, double speed_m_s, cp_error *error)
 {
     return command_vehicle("set speed", vehicle, error, [=](const std::string &id) {
-        libsumo::Vehicle::setSpeed(id, speed_m_s);
+        if (holds(vehicle, speed_m_s))
+            libsumo::Vehicle::setSpeed(id, speed_m_s);
     });
 }
 

@@ -42,6 +42,7 @@ typedef struct cp_vehicle_state {
     double lane_position_m; /* front, along the lane */
     double length_m;
     double width_m;
+    bool is_in_junction; /* its front */
 } cp_vehicle_state;
 
 /* One collision as SUMO itself reports it. */
@@ -111,7 +112,9 @@ CP_MUST_CHECK cp_status sumo_bridge_gone(const uint32_t **vehicles, size_t *coun
 
 /* Commands. A vehicle that is gone is CP_TRAFFIC_FAILED. */
 CP_MUST_CHECK cp_status sumo_bridge_remove(uint32_t vehicle, cp_error *error);
-/* Command a speed for the coming step; negative hands the vehicle back to SUMO's driver. */
+/* Command a speed for the coming step and on; negative hands the vehicle back to SUMO's driver. Of
+ * several commands before one step the lowest speed holds, and handing back counts for nothing
+ * while another commands a speed: a driver and an assistance function may brake the same car. */
 CP_MUST_CHECK cp_status sumo_bridge_set_speed(uint32_t vehicle, double speed_m_s, cp_error *error);
 /* SUMO's speed mode bit set (31 = all checks on). */
 CP_MUST_CHECK cp_status sumo_bridge_set_speed_mode(uint32_t vehicle, int mode, cp_error *error);

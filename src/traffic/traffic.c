@@ -19,6 +19,7 @@ struct cp_traffic {
     size_t numbers;   /* length of row_of */
     const uint32_t *departed;
     size_t departed_count;
+    cp_lateral_overlays *overlays;
     cp_exposure exposure;
 };
 
@@ -31,6 +32,11 @@ cp_status cp_traffic_create_from(const cp_traffic_source *source, double step_le
     cp_traffic *created = calloc(1, sizeof *created);
     if (!created)
         return cp_fail_memory(error, "traffic");
+    cp_status status = cp_lateral_overlays_create(&created->overlays, error);
+    if (status != CP_OK) {
+        free(created);
+        return status;
+    }
     created->source = source;
     created->step_length_s = step_length_s;
     created->time_s = source->time_s();
@@ -43,6 +49,7 @@ void cp_traffic_destroy(cp_traffic *traffic)
     if (!traffic)
         return;
     traffic->source->stop();
+    cp_lateral_overlays_destroy(traffic->overlays);
     free(traffic->motions);
     free(traffic->previous);
     free(traffic->row_of);
@@ -93,6 +100,16 @@ static bool has_jumped(const cp_vehicle_state *before, const cp_vehicle_state *a
     return chord_m > 1.5 * fastest_m_s * step_length_s + lane_width_m;
 }
 
+// Way of a vehicle in the step just made, by the ballistic update; previous is the step before.
+static double way_m(const cp_traffic *traffic, const cp_vehicle_state *after)
+{
+    uint32_t row = traffic->row_of[after->vehicle];
+    if (row == SUMO_BRIDGE_NONE)
+        return 0.0;
+    double mean_m_s = 0.5 * (traffic->previous[row].after.speed_m_s + after->speed_m_s);
+    return mean_m_s * traffic->step_length_s;
+}
+
 static cp_vehicle_motion motion_to(const cp_traffic *traffic, const cp_vehicle_state *after)
 {
     cp_vehicle_motion motion = {.after = *after};
@@ -128,8 +145,12 @@ cp_status cp_traffic_step(cp_traffic *traffic, cp_error *error)
     traffic->previous_count = traffic->count;
     traffic->motions = spare;
     traffic->count = count;
-    for (size_t k = 0; k < count; k++)
-        traffic->motions[k] = motion_to(traffic, &states[k]);
+    for (size_t k = 0; k < count; k++) {
+        cp_vehicle_state state = states[k];
+        cp_lateral_overlay_apply(traffic->overlays, &state, way_m(traffic, &state));
+        traffic->motions[k] = motion_to(traffic, &state);
+    }
+    cp_lateral_overlays_prune(traffic->overlays);
     for (size_t k = 0; k < traffic->previous_count; k++)
         traffic->row_of[traffic->previous[k].after.vehicle] = SUMO_BRIDGE_NONE;
     for (size_t k = 0; k < count; k++)
@@ -204,6 +225,11 @@ const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle)
 const cp_traffic_source *cp_traffic_commands(const cp_traffic *traffic)
 {
     return traffic->source;
+}
+
+cp_lateral_overlays *cp_traffic_overlays(const cp_traffic *traffic)
+{
+    return traffic->overlays;
 }
 
 cp_exposure cp_traffic_exposure(const cp_traffic *traffic)

@@ -2,12 +2,13 @@
 #ifndef TRAFFIC_TRAFFIC_H
 #define TRAFFIC_TRAFFIC_H
 
+#include "traffic/lateral_overlay.h"
 #include "traffic/sumo_bridge.h"
 
 /* The step loop around the bridge: this step's and last step's states matched per vehicle,
  * exposure, removal of crashed cars. One a process. */
 
-/* Motion of one vehicle through the step that has just ended. */
+/* Motion of one vehicle through the step that has just ended, lateral overlays included. */
 typedef struct cp_vehicle_motion {
     cp_vehicle_state before; /* at the beginning of the step; valid if was_present */
     cp_vehicle_state after;
@@ -79,6 +80,8 @@ CP_MUST_CHECK cp_status cp_traffic_road_relation(const cp_traffic *traffic,
 const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle);
 /* Where to send commands for the coming step. */
 const cp_traffic_source *cp_traffic_commands(const cp_traffic *traffic);
+/* Where the cars are that drift off SUMO's path; commands for the coming step like the others. */
+cp_lateral_overlays *cp_traffic_overlays(const cp_traffic *traffic);
 cp_exposure cp_traffic_exposure(const cp_traffic *traffic);
 /* Take a crashed vehicle off the road now; gone already is fine. */
 CP_MUST_CHECK cp_status cp_traffic_remove(cp_traffic *traffic, uint32_t vehicle, cp_error *error);

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run/checkpoint.h"
+
+#include "run/branch_process.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* Room for answers: address space only, until something is written there. */
+#define ARENA_BYTES ((size_t)4 << 30)
+#define ANSWER_ALIGNMENT 64
+
+typedef struct frozen {
+    pid_t pid;   /* 0: free */
+    int channel; /* our end of its socket */
+    double time_s;
+} frozen;
+
+struct cp_checkpoints {
+    cp_checkpoint_options options;
+    frozen *slots; /* options.kept of them */
+    char *request; /* options.request_max bytes, in a checkpoint */
+    char *arena;   /* answers, one behind the other */
+    size_t arena_used;
+};
+
+/* What goes before a request and before an answer. */
+typedef struct request_head {
+    size_t branches;
+    size_t size;
+} request_head;
+
+typedef struct answer_head {
+    int wait_status;
+    size_t size;
+} answer_head;
+
+cp_checkpoint_options cp_checkpoint_options_default(void)
+{
+    return (cp_checkpoint_options){
+        .kept = 12, .cpu_s = 120, .wall_s = 1200, .request_max = (size_t)64 << 10};
+}
+
+// ---- in a checkpoint: forking branches -----------------------------------------------------
+
+static _Noreturn void run_branch(const cp_checkpoints *self, pid_t checkpoint, size_t number,
+                                 size_t size, int answer)
+{
+    const cp_checkpoint_options *options = &self->options;
+    if (!cp_branch_follow(checkpoint) || !cp_branch_isolate(answer) ||
+        !cp_branch_limit(options->cpu_s, options->wall_s))
+        _exit(1);
+    _exit(options->branch(options->context, number, self->request, size, answer) == 0 ? 0 : 1);
+}
+
+// Everything a branch says until it closes its end, behind the answers known already.
+static size_t read_answer(const cp_checkpoints *self, int from)
+{
+    size_t size = 0, room = ARENA_BYTES - self->arena_used;
+    while (size < room) {
+        ssize_t got = read(from, self->arena + self->arena_used + size, room - size);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            break;
+        size += (size_t)got;
+    }
+    return size;
+}
+
+static bool serve_branch(const cp_checkpoints *self, size_t number, size_t size, int channel)
+{
+    int ends[2];
+    answer_head head = {.wait_status = -1};
+    pid_t self_pid = getpid();
+    if (pipe(ends) != 0)
+        return false;
+    pid_t pid = fork();
+    if (pid == 0)
+        run_branch(self, self_pid, number, size, ends[1]);
+    close(ends[1]);
+    if (pid > 0) {
+        head.size = read_answer(self, ends[0]);
+        while (waitpid(pid, &head.wait_status, 0) < 0 && errno == EINTR)
+            continue;
+    }
+    close(ends[0]);
+    return cp_branch_write(channel, &head, sizeof head) &&
+           cp_branch_write(channel, self->arena + self->arena_used, head.size);
+}
+
+// A checkpoint's life: tell that it is ready, then serve until nobody is left to ask.
+static _Noreturn void be_frozen(const cp_checkpoints *self, pid_t worker, int channel)
+{
+    char ready = 1;
+    request_head head;
+    bool alive = cp_branch_follow(worker) && cp_branch_isolate(channel) &&
+                 cp_branch_write(channel, &ready, 1);
+    while (alive && cp_branch_read(channel, &head, sizeof head) &&
+           cp_branch_read(channel, self->request, head.size))
+        for (size_t k = 0; alive && k < head.branches; k++)
+            alive = serve_branch(self, k, head.size, channel);
+    _exit(0);
+}
+
+// ---- in the worker -------------------------------------------------------------------------
+
+static void end_frozen(frozen *slot)
+{
+    if (slot->pid == 0)
+        return;
+    kill(slot->pid, SIGKILL);
+    while (waitpid(slot->pid, NULL, 0) < 0 && errno == EINTR)
+        continue;
+    close(slot->channel);
+    *slot = (frozen){0};
+}
+
+void cp_checkpoints_destroy(cp_checkpoints *self)
+{
+    if (self == NULL)
+        return;
+    for (size_t k = 0; self->slots != NULL && k < self->options.kept; k++)
+        end_frozen(&self->slots[k]);
+    if (self->arena != NULL)
+        munmap(self->arena, ARENA_BYTES);
+    free(self->request);
+    free(self->slots);
+    free(self);
+}
+
+cp_status cp_checkpoints_create(const cp_checkpoint_options *options, cp_checkpoints **checkpoints,
+                                cp_error *error)
+{
+    *checkpoints = NULL;
+    cp_checkpoints *self = calloc(1, sizeof *self);
+    if (self == NULL)
+        return cp_fail_memory(error, "checkpoints");
+    self->options = *options;
+    self->slots = calloc(options->kept, sizeof *self->slots);
+    self->request = calloc(1, options->request_max);
+    void *arena = mmap(NULL, ARENA_BYTES, PROT_READ | PROT_WRITE,
+                       MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    self->arena = arena != MAP_FAILED ? arena : NULL;
+    if (self->slots == NULL || self->request == NULL || self->arena == NULL) {
+        cp_checkpoints_destroy(self);
+        return cp_fail_memory(error, "checkpoints");
+    }
+    *checkpoints = self;
+    return CP_OK;
+}
+
+// A free slot; the oldest makes way.
+static frozen *free_slot(cp_checkpoints *self)
+{
+    frozen *oldest = &self->slots[0];
+    for (size_t k = 0; k < self->options.kept; k++) {
+        frozen *slot = &self->slots[k];
+        if (slot->pid == 0)
+            return slot;
+        if (slot->time_s < oldest->time_s)
+            oldest = slot;
+    }
+    end_frozen(oldest);
+    return oldest;
+}
+
+cp_status cp_checkpoints_take(cp_checkpoints *self, double time_s, cp_error *error)
+{
+    int ends[2];
+    char ready = 0;
+    frozen *slot = free_slot(self);
+    pid_t worker = getpid();
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+        return cp_fail(error, CP_RUN_FAILED, "checkpoint at %.2f s: %s", time_s, strerror(errno));
+    pid_t pid = fork();
+    if (pid == 0)
+        be_frozen(self, worker, ends[1]);
+    int failed = pid < 0 ? errno : 0;
+    close(ends[1]);
+    if (failed == 0) {
+        // Until it has its own places in the files, ours must not move.
+        *slot = (frozen){.pid = pid, .channel = ends[0], .time_s = time_s};
+        if (cp_branch_read(ends[0], &ready, 1))
+            return CP_OK;
+        end_frozen(slot);
+        return cp_fail(error, CP_RUN_FAILED, "checkpoint at %.2f s: could not be cut off", time_s);
+    }
+    close(ends[0]);
+    return cp_fail(error, CP_RUN_FAILED, "checkpoint at %.2f s: %s", time_s, strerror(failed));
+}
+
+bool cp_checkpoints_find(const cp_checkpoints *self, double latest_s, double *time_s)
+{
+    bool found = false;
+    for (size_t k = 0; k < self->options.kept; k++) {
+        const frozen *slot = &self->slots[k];
+        if (slot->pid == 0 || slot->time_s > latest_s || (found && slot->time_s <= *time_s))
+            continue;
+        *time_s = slot->time_s;
+        found = true;
+    }
+    return found;
+}
+
+static void explain(int wait_status, cp_branch_end *end)
+{
+    if (wait_status == -1)
+        snprintf(end->failure, sizeof end->failure, "could not be started");
+    else if (WIFSIGNALED(wait_status) && WTERMSIG(wait_status) == SIGALRM)
+        snprintf(end->failure, sizeof end->failure, "out of time");
+    else if (WIFSIGNALED(wait_status) && WTERMSIG(wait_status) == SIGXCPU)
+        snprintf(end->failure, sizeof end->failure, "out of processor time");
+    else if (WIFSIGNALED(wait_status))
+        snprintf(end->failure, sizeof end->failure, "ended by signal %d (%s)",
+                 WTERMSIG(wait_status), strsignal(WTERMSIG(wait_status)));
+    else if (WEXITSTATUS(wait_status) != 0)
+        snprintf(end->failure, sizeof end->failure, "failed");
+}
+
+static bool take_answer(cp_checkpoints *self, int channel, cp_branch_end *end)
+{
+    answer_head head;
+    *end = (cp_branch_end){0};
+    if (!cp_branch_read(channel, &head, sizeof head) ||
+        head.size > ARENA_BYTES - self->arena_used ||
+        !cp_branch_read(channel, self->arena + self->arena_used, head.size))
+        return false;
+    explain(head.wait_status, end);
+    end->answered = end->failure[0] == '\0';
+    end->answer = self->arena + self->arena_used;
+    end->answer_size = head.size;
+    self->arena_used +=
+        (head.size + ANSWER_ALIGNMENT - 1) / ANSWER_ALIGNMENT * (size_t)ANSWER_ALIGNMENT;
+    return true;
+}
+
+bool cp_checkpoints_branch(cp_checkpoints *self, double time_s, const void *request, size_t size,
+                           size_t count, cp_branch_end *ends)
+{
+    frozen *slot = NULL;
+    for (size_t k = 0; k < self->options.kept; k++)
+        if (self->slots[k].pid != 0 && self->slots[k].time_s == time_s)
+            slot = &self->slots[k];
+    if (slot == NULL || size > self->options.request_max)
+        return false;
+    request_head head = {.branches = count, .size = size};
+    bool alive = cp_branch_write(slot->channel, &head, sizeof head) &&
+                 cp_branch_write(slot->channel, request, size);
+    for (size_t k = 0; alive && k < count; k++)
+        alive = take_answer(self, slot->channel, &ends[k]);
+    if (!alive)
+        end_frozen(slot);
+    return alive;
+}

@@ -33,8 +33,7 @@ enum {
 };
 
 static const cp_control_parameter PARAMETERS[] = {
-    [PENETRATION_1] = {"penetration_1", 1.0, 0.0, 1.0,
-                       "share of vehicles equipped, drawn once per vehicle id (assumed)"},
+    [PENETRATION_1] = CP_CONTROL_PENETRATION,
     [TTC_S] = {"ttc_s", 1.2, 0.1, 5.0, "brake request below this time to collision, s (assumed)"},
     [DECELERATION_M_S2] = {"deceleration_m_s2", 8.0, 0.5, 12.0,
                            "deceleration asked for, m/s^2 (assumed; UN Regulation 152 asks for 5 "
@@ -61,14 +60,10 @@ static const cp_control_parameter PARAMETERS[] = {
                 "(assumed)"},
 };
 
-typedef enum equipment { EQUIPMENT_UNKNOWN, EQUIPMENT_NONE, EQUIPMENT_AEB } equipment;
-
 /* The function in one car. */
 typedef struct aeb_car {
-    equipment equipment;
     bool is_requesting; /* from the request to the release */
-    bool is_braking;    /* commands have been sent */
-    int driver_mode;    /* SUMO's speed mode before */
+    bool is_braking;    /* speeds have been asked for */
     double brake_start_s;
     double commanded_until_s; /* the speed loss up to here has been commanded */
     double calm_since_s;      /* no danger, or standing, since then; INFINITY while in danger */
@@ -82,7 +77,6 @@ typedef struct aeb {
     aeb_car *cars; /* by vehicle number */
     size_t numbers;
     cp_neighbourhood neighbourhood;
-    size_t equipped;
     size_t activations;
     double braking_s;
 } aeb;
@@ -123,19 +117,6 @@ static cp_status reserve(aeb *self, uint32_t vehicle, cp_error *error)
     self->cars = cars;
     self->numbers = numbers;
     return CP_OK;
-}
-
-// Equipped or not: one draw per vehicle id, for good.
-static void equip(aeb *self, const cp_control_context *context, uint32_t vehicle)
-{
-    aeb_car *car = &self->cars[vehicle];
-    if (car->equipment != EQUIPMENT_UNKNOWN)
-        return;
-    cp_rng_key key =
-        cp_rng_key_text(context->seed_key, cp_traffic_vehicle_id(self->traffic, vehicle));
-    bool is_equipped = cp_rng_uniform(key, 0) < context->parameter[PENETRATION_1];
-    car->equipment = is_equipped ? EQUIPMENT_AEB : EQUIPMENT_NONE;
-    self->equipped += is_equipped;
 }
 
 // What the sensor's tracker makes of a vehicle. SUMO's heading jumps where a lane change begins or
@@ -242,7 +223,6 @@ static bool is_over(const aeb *self, const cp_control_context *context,
 static cp_status brake(aeb *self, const cp_control_context *context,
                        const cp_vehicle_motion *motion, aeb_car *car, cp_error *error)
 {
-    const cp_traffic_source *commands = cp_traffic_commands(self->traffic);
     uint32_t vehicle = motion->after.vehicle;
     double step_s = cp_traffic_step_length_s(self->traffic);
     double end_s = cp_traffic_time_s(self->traffic) + step_s;
@@ -252,51 +232,32 @@ static cp_status brake(aeb *self, const cp_control_context *context,
     if (loss_m_s <= 0.0)
         return CP_OK;
 
-    // Mode 27: all checks but the maximum deceleration of the vehicle type.
-    if (!car->is_braking) {
-        cp_status status = commands->speed_mode(vehicle, &car->driver_mode, error);
-        if (status == CP_OK)
-            status = commands->set_speed_mode(vehicle, 27, error);
-        if (status != CP_OK)
-            return status;
-        car->is_braking = true;
-        self->activations++;
-    }
+    self->activations += !car->is_braking;
+    car->is_braking = true;
     car->commanded_until_s = end_s;
     self->braking_s += step_s;
-    return commands->set_speed(vehicle, fmax(motion->after.speed_m_s - loss_m_s, 0.0), error);
-}
-
-static cp_status release(aeb *self, uint32_t vehicle, aeb_car *car, cp_error *error)
-{
-    const cp_traffic_source *commands = cp_traffic_commands(self->traffic);
-    car->is_requesting = false;
-    if (!car->is_braking)
-        return CP_OK;
-    car->is_braking = false;
-    cp_status status = commands->set_speed(vehicle, -1.0, error);
-    return status == CP_OK ? commands->set_speed_mode(vehicle, car->driver_mode, error) : status;
+    return cp_actuation_request(context->actuation, vehicle,
+                                fmax(motion->after.speed_m_s - loss_m_s, 0.0), loss_m_s / step_s,
+                                error);
 }
 
 static cp_status step_car(aeb *self, const cp_control_context *context,
                           const cp_vehicle_motion *motion, cp_error *error)
 {
     aeb_car *car = &self->cars[motion->after.vehicle];
-    if (car->equipment != EQUIPMENT_AEB)
-        return CP_OK;
     if (!car->is_requesting)
         watch(self, context, motion, car);
     else if (is_withdrawn(self, context, motion, car))
         car->is_requesting = false;
     else if (is_over(self, context, motion, car))
-        return release(self, motion->after.vehicle, car, error);
+        car->is_requesting = car->is_braking = false;
     return car->is_requesting ? brake(self, context, motion, car, error) : CP_OK;
 }
 
 static cp_status step(void *state, const cp_control_context *context, cp_error *error)
 {
     aeb *self = state;
-    if (context->parameter[PENETRATION_1] <= 0.0)
+    if (!cp_equipment_is_any(context->equipment))
         return CP_OK;
     size_t count;
     const cp_vehicle_motion *motions = cp_traffic_motions(self->traffic, &count);
@@ -307,8 +268,11 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
         status = reserve(self, motions[k].after.vehicle, error);
         if (status != CP_OK)
             return status;
-        equip(self, context, motions[k].after.vehicle);
-        status = step_car(self, context, &motions[k], error);
+        bool has = false;
+        status = cp_equipment_has(context->equipment, self->traffic, motions[k].after.vehicle, &has,
+                                  error);
+        if (status == CP_OK && has)
+            status = step_car(self, context, &motions[k], error);
     }
     return status;
 }
@@ -316,15 +280,13 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
 static size_t counters(const void *state, const char **names, double *values, size_t room)
 {
     const aeb *self = state;
-    if (room < 3)
+    if (room < 2)
         return 0;
-    names[0] = "equipped_vehicles";
-    values[0] = (double)self->equipped;
-    names[1] = "activations";
-    values[1] = (double)self->activations;
-    names[2] = "braking_s";
-    values[2] = self->braking_s;
-    return 3;
+    names[0] = "activations";
+    values[0] = (double)self->activations;
+    names[1] = "braking_s";
+    values[1] = self->braking_s;
+    return 2;
 }
 
 const cp_control_type CP_CONTROL_AEB = {

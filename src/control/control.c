@@ -19,12 +19,16 @@ const size_t CP_CONTROL_TYPE_COUNT = sizeof CP_CONTROL_TYPE / sizeof *CP_CONTROL
 typedef struct active_control {
     cp_control_settings settings;
     cp_control_context context;
+    cp_equipment equipment;
     void *state;
 } active_control;
 
 struct cp_controls {
     active_control *active;
     size_t count; /* created so far */
+    const cp_traffic *traffic;
+    cp_actuation actuation;
+    char *only[2]; /* of a treatment: the ids of its two vehicles */
 };
 
 const cp_control_type *cp_control_type_find(cp_control_kind kind, const char *name)
@@ -56,38 +60,64 @@ static cp_status check_ranges(const cp_control_settings *settings, cp_error *err
     return CP_OK;
 }
 
-static cp_status create_one(active_control *active, const cp_control_settings *settings,
-                            cp_rng_key replication_key, const cp_traffic *traffic, cp_error *error)
+static cp_status create_one(cp_controls *controls, active_control *active,
+                            const cp_control_settings *settings, cp_rng_key replication_key,
+                            cp_error *error)
 {
     cp_status status = check_ranges(settings, error);
     if (status != CP_OK)
         return status;
+    bool is_function = settings->type->kind == CP_CONTROL_FUNCTION;
     active->settings = *settings;
+    active->equipment = (cp_equipment){
+        .key = replication_key,
+        .penetration_1 = is_function ? settings->parameter[0] : 0.0,
+        .shares = settings->shares,
+        .share_count = settings->share_count,
+        .only = controls->only[0] ? (const char *const *)controls->only : NULL,
+        .only_count = 2,
+    };
     active->context = (cp_control_context){
-        .traffic = traffic,
+        .traffic = controls->traffic,
         .seed_key = cp_rng_key_text(replication_key, settings->type->name),
         .parameter = active->settings.parameter,
+        .equipment = &active->equipment,
+        .actuation = &controls->actuation,
     };
     return settings->type->create(&active->context, &active->state, error);
 }
 
-cp_status cp_controls_create(const cp_control_settings *settings, size_t count, uint64_t study_seed,
-                             uint64_t replication_seed, const cp_traffic *traffic,
-                             cp_controls **controls, cp_error *error)
+static cp_status create_all(const cp_control_settings *settings, size_t count, uint64_t study_seed,
+                            uint64_t replication_seed, cp_controls *controls, cp_error *error)
+{
+    if (count > 0 && !(controls->active = calloc(count, sizeof *controls->active)))
+        return cp_fail_memory(error, "controls");
+    cp_rng_key key = cp_rng_key_number(cp_rng_key_seed(study_seed), replication_seed);
+    for (size_t k = 0; k < count; k++) {
+        cp_status status = create_one(controls, &controls->active[k], &settings[k], key, error);
+        if (status != CP_OK)
+            return status;
+        controls->count++;
+    }
+    return CP_OK;
+}
+
+cp_status cp_controls_create_for_pair(const cp_control_settings *settings, size_t count,
+                                      uint64_t study_seed, uint64_t replication_seed,
+                                      const cp_traffic *traffic, const char *const ids[2],
+                                      cp_controls **controls, cp_error *error)
 {
     *controls = NULL;
     cp_controls *created = calloc(1, sizeof *created);
     if (!created)
         return cp_fail_memory(error, "controls");
+    created->traffic = traffic;
     cp_status status = CP_OK;
-    if (count > 0 && !(created->active = calloc(count, sizeof *created->active)))
-        status = cp_fail_memory(error, "controls");
-    cp_rng_key key = cp_rng_key_number(cp_rng_key_seed(study_seed), replication_seed);
-    for (size_t k = 0; k < count && status == CP_OK; k++) {
-        status = create_one(&created->active[k], &settings[k], key, traffic, error);
-        if (status == CP_OK)
-            created->count++;
-    }
+    for (int k = 0; ids && k < 2 && status == CP_OK; k++)
+        if (!(created->only[k] = strdup(ids[k])))
+            status = cp_fail_memory(error, "controls");
+    if (status == CP_OK)
+        status = create_all(settings, count, study_seed, replication_seed, created, error);
     if (status != CP_OK) {
         cp_controls_destroy(created);
         return status;
@@ -96,12 +126,25 @@ cp_status cp_controls_create(const cp_control_settings *settings, size_t count, 
     return CP_OK;
 }
 
+cp_status cp_controls_create(const cp_control_settings *settings, size_t count, uint64_t study_seed,
+                             uint64_t replication_seed, const cp_traffic *traffic,
+                             cp_controls **controls, cp_error *error)
+{
+    return cp_controls_create_for_pair(settings, count, study_seed, replication_seed, traffic, NULL,
+                                       controls, error);
+}
+
 void cp_controls_destroy(cp_controls *controls)
 {
     if (!controls)
         return;
-    for (size_t k = 0; k < controls->count; k++)
+    for (size_t k = 0; k < controls->count; k++) {
         controls->active[k].settings.type->destroy(controls->active[k].state);
+        cp_equipment_destroy(&controls->active[k].equipment);
+    }
+    cp_actuation_destroy(&controls->actuation);
+    free(controls->only[0]);
+    free(controls->only[1]);
     free(controls->active);
     free(controls);
 }
@@ -117,7 +160,12 @@ cp_status cp_controls_step(cp_controls *controls, cp_error *error)
             return status;
         }
     }
-    return CP_OK;
+    return cp_actuation_apply(&controls->actuation, controls->traffic, error);
+}
+
+double cp_controls_brake_request_m_s2(const cp_controls *controls, uint32_t vehicle)
+{
+    return cp_actuation_deceleration_m_s2(&controls->actuation, vehicle);
 }
 
 bool cp_controls_is_at_fault(void *context, uint32_t vehicle)
@@ -138,6 +186,12 @@ bool cp_controls_is_at_fault(void *context, uint32_t vehicle)
 static bool add_counters(json_t *object, const active_control *active)
 {
     const cp_control_type *type = active->settings.type;
+    if (type->kind == CP_CONTROL_FUNCTION) {
+        char key[128];
+        snprintf(key, sizeof key, "%s.equipped_vehicles", type->name);
+        if (json_object_set_new(object, key, json_real((double)active->equipment.equipped)) != 0)
+            return false;
+    }
     if (!type->counters)
         return true;
     const char *names[COUNTERS_MAX];

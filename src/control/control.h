@@ -2,12 +2,14 @@
 #ifndef CONTROL_CONTROL_H
 #define CONTROL_CONTROL_H
 
+#include "control/actuation.h"
+#include "control/equipment.h"
 #include "core/rng.h"
 #include "traffic/traffic.h"
 
 /* What acts on vehicles besides SUMO's own driver: driver errors (baseline humans) and driver
  * assistance functions. All share one interface, listed in one table; another one is one file and
- * one row. Parameters are numbers with a unit in the name. */
+ * one row (README of this folder). Parameters are numbers with a unit in the name. */
 
 typedef enum cp_control_kind {
     CP_CONTROL_DRIVER_ERROR, /* belongs to a scenario: drivers as they are */
@@ -23,7 +25,14 @@ typedef struct cp_control_parameter {
     const char *what; /* with source, or the word "assumed" */
 } cp_control_parameter;
 
-#define CP_CONTROL_PARAMETERS_MAX 24
+/* First parameter of every function: share of vehicles that have it (equipment.h). */
+#define CP_CONTROL_PENETRATION                                                                     \
+    {                                                                                              \
+        "penetration_1", 1.0, 0.0, 1.0,                                                            \
+            "share of vehicles equipped, drawn once per vehicle (assumed)"                         \
+    }
+
+#define CP_CONTROL_PARAMETERS_MAX 40
 
 /* What a control sees when it acts. seed_key already holds study seed, replication seed and the
  * control's name: derive from it by vehicle ids and occasion only (core/rng.h). */
@@ -31,6 +40,8 @@ typedef struct cp_control_context {
     const cp_traffic *traffic;
     cp_rng_key seed_key;
     const double *parameter; /* by index of the type's parameter table */
+    cp_equipment *equipment; /* of functions: who has it */
+    cp_actuation *actuation; /* of functions: where to ask for braking */
 } cp_control_context;
 
 /* A kind of control. create/step/destroy handle its mutable state of one replication. */
@@ -38,6 +49,8 @@ typedef struct cp_control_type {
     const char *name; /* "failed_to_see", "aeb" */
     cp_control_kind kind;
     const char *what; /* one line for --help and reports */
+    /* It changes how a car is driven long before a crash: no treatment of a counterfactual pair. */
+    bool acts_long_before;
     const cp_control_parameter *parameters;
     size_t parameter_count;
     CP_MUST_CHECK cp_status (*create)(const cp_control_context *context, void **state,
@@ -62,6 +75,8 @@ const cp_control_type *cp_control_type_find(cp_control_kind kind, const char *na
 typedef struct cp_control_settings {
     const cp_control_type *type;
     double parameter[CP_CONTROL_PARAMETERS_MAX];
+    cp_equipment_share *shares; /* penetration by vehicle type; owned by the study */
+    size_t share_count;
 } cp_control_settings;
 
 cp_control_settings cp_control_settings_default(const cp_control_type *type);
@@ -76,10 +91,20 @@ CP_MUST_CHECK cp_status cp_controls_create(const cp_control_settings *settings, 
                                            uint64_t study_seed, uint64_t replication_seed,
                                            const cp_traffic *traffic, cp_controls **controls,
                                            cp_error *error);
+/* The same for functions on two vehicles only, named by their SUMO ids (copied): a treatment. Who
+ * of them has a function is still drawn. */
+CP_MUST_CHECK cp_status cp_controls_create_for_pair(const cp_control_settings *settings,
+                                                    size_t count, uint64_t study_seed,
+                                                    uint64_t replication_seed,
+                                                    const cp_traffic *traffic,
+                                                    const char *const ids[2],
+                                                    cp_controls **controls, cp_error *error);
 void cp_controls_destroy(cp_controls *controls);
 CP_MUST_CHECK cp_status cp_controls_step(cp_controls *controls, cp_error *error);
 /* Signature fits cp_detector_step: context is the cp_controls. */
 bool cp_controls_is_at_fault(void *context, uint32_t vehicle);
+/* Deceleration that the functions ask of a vehicle in the coming step, m/s^2; 0 for none. */
+double cp_controls_brake_request_m_s2(const cp_controls *controls, uint32_t vehicle);
 /* Counters of all controls, "aeb.activations" style, as one JSON object text; caller frees. */
 CP_MUST_CHECK cp_status cp_controls_counters_json(const cp_controls *controls, char **json,
                                                   cp_error *error);

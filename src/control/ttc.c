@@ -1,6 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "control/ttc.h"
 
+#include "core/units.h"
+
+cp_moving_rectangle cp_moving_rectangle_of(const cp_vehicle_motion *motion)
+{
+    const cp_vehicle_state *state = &motion->after;
+    cp_vec2 heading = cp_vec2_heading(state->yaw_rad);
+    cp_vec2 front_m = {state->front_x_m, state->front_y_m};
+    cp_moving_rectangle moving = {
+        .rectangle = {cp_vec2_sub(front_m, cp_vec2_scale(heading, 0.5 * state->length_m)),
+                      state->yaw_rad, state->length_m, state->width_m},
+        .velocity_m_s = cp_vec2_scale(heading, state->speed_m_s),
+        .yaw_rate_rad_s = motion->yaw_rate_rad_s,
+    };
+    if (fabs(moving.yaw_rate_rad_s * state->speed_m_s) > CP_G0_M_S2)
+        moving.yaw_rate_rad_s = 0.0;
+    return moving;
+}
+
 cp_rectangle cp_moving_rectangle_at(const cp_moving_rectangle *moving, double time_s)
 {
     // Chord of the arc: half the turn away from the tangent, shorter by sin(x)/x.

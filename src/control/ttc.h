@@ -3,6 +3,7 @@
 #define CONTROL_TTC_H
 
 #include "core/geometry.h"
+#include "traffic/traffic.h"
 
 /* A rectangle that keeps its velocity and yaw rate: its centre moves on a circle (a straight line
  * at yaw rate 0), velocity and heading turn together. */
@@ -11,6 +12,11 @@ typedef struct cp_moving_rectangle {
     cp_vec2 velocity_m_s;   /* of the centre, now */
     double yaw_rate_rad_s;
 } cp_moving_rectangle;
+
+/* What a step says of a vehicle: outline and forward speed at its end, mean yaw rate. SUMO's
+ * heading jumps where a lane change begins or ends; a yaw rate that asks for more than 1 g of
+ * lateral acceleration is such a jump and not a turn, and counts as 0. */
+cp_moving_rectangle cp_moving_rectangle_of(const cp_vehicle_motion *motion);
 
 /* Where it is time_s from now. */
 cp_rectangle cp_moving_rectangle_at(const cp_moving_rectangle *moving, double time_s);

@@ -46,7 +46,7 @@ typedef struct answer_head {
 cp_checkpoint_options cp_checkpoint_options_default(void)
 {
     return (cp_checkpoint_options){
-        .kept = 12, .cpu_s = 120, .wall_s = 1200, .request_max = (size_t)64 << 10};
+        .kept = 20, .cpu_s = 120, .wall_s = 1200, .request_max = (size_t)64 << 10};
 }
 
 // ---- in a checkpoint: forking branches -----------------------------------------------------

@@ -33,7 +33,7 @@ typedef struct cp_checkpoint_options {
     void *context;
 } cp_checkpoint_options;
 
-/* kept 12, cpu_s 120, wall_s 1200, request_max 64 KiB. */
+/* kept 20, cpu_s 120, wall_s 1200, request_max 64 KiB. */
 cp_checkpoint_options cp_checkpoint_options_default(void);
 
 /* What a branch came to. */

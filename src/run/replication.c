@@ -2,213 +2,54 @@
 #include "run/replication.h"
 
 #include "core/log.h"
+#include "run/counterfactual.h"
 #include "run/crash_record.h"
-#include "run/cross_check.h"
-#include "traffic/traffic.h"
+#include "run/simulation.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char FOUND_CRASH[] = "crash";
-static const char VERDICT_AFTER_CRASH[] = "after_crash";
-static const char VERDICT_WARMUP[] = "warmup";
-
 // What is happening in a replication; what is known about it is const.
 typedef struct replication_run {
+    const cp_study *study;
     const cp_fleet *fleet;
     const cp_study_scenario *scenario;
-    cp_traffic *traffic;
-    cp_controls *controls;
-    cp_detector *detector;
-    cp_cross_check check;
+    cp_simulation simulation;
+    cp_counterfactual *counterfactual; /* NULL in other designs */
     cp_result_rows *results;
-    double counted_from_s; /* SUMO clock: end of the warm-up */
-    uint32_t *crashed;     /* vehicles that crashed in this step */
-    size_t crashed_count;
-    size_t crashed_room;
 } replication_run;
-
-// ---- beginning and end ---------------------------------------------------------------------
-
-static cp_status create_controls(const cp_study *study, const cp_study_scenario *scenario,
-                                 const cp_study_variant *variant, uint64_t seed,
-                                 const cp_traffic *traffic, cp_controls **controls, cp_error *error)
-{
-    // Driver errors first, then the functions that are to make up for them.
-    size_t count = scenario->driver_error_count + variant->function_count;
-    cp_control_settings *settings = calloc(count + 1, sizeof *settings);
-    if (settings == NULL)
-        return cp_fail_memory(error, "controls");
-    for (size_t k = 0; k < count; k++)
-        settings[k] = k < scenario->driver_error_count
-                          ? scenario->driver_errors[k]
-                          : variant->functions[k - scenario->driver_error_count];
-    cp_status status =
-        cp_controls_create(settings, count, study->seed, seed, traffic, controls, error);
-    free(settings);
-    return status;
-}
-
-static cp_status start_traffic(const cp_study *study, const cp_study_scenario *scenario,
-                               uint64_t seed, cp_traffic **traffic, cp_error *error)
-{
-    cp_traffic_options options = {.sumocfg = scenario->sumocfg_path,
-                                  .seed = seed,
-                                  .step_length_s = study->step_length_s,
-                                  .options = (const char *const *)scenario->sumo_options,
-                                  .option_count = scenario->sumo_option_count};
-    return cp_traffic_create(&options, traffic, error);
-}
-
-static void run_destroy(replication_run *run)
-{
-    cp_cross_check_destroy(&run->check);
-    cp_detector_destroy(run->detector);
-    cp_controls_destroy(run->controls);
-    cp_traffic_destroy(run->traffic);
-    free(run->crashed);
-}
-
-// ---- contacts of one step ------------------------------------------------------------------
-
-static bool has_crashed(const replication_run *run, uint32_t vehicle)
-{
-    for (size_t k = 0; k < run->crashed_count; k++)
-        if (run->crashed[k] == vehicle)
-            return true;
-    return false;
-}
-
-static cp_status remember_crashed(replication_run *run, uint32_t vehicle, cp_error *error)
-{
-    if (run->crashed_count == run->crashed_room) {
-        size_t room = run->crashed_room == 0 ? 16 : 2 * run->crashed_room;
-        uint32_t *larger = realloc(run->crashed, room * sizeof *larger);
-        if (larger == NULL)
-            return cp_fail_memory(error, "crashed vehicles");
-        run->crashed = larger;
-        run->crashed_room = room;
-    }
-    run->crashed[run->crashed_count++] = vehicle;
-    return CP_OK;
-}
-
-static cp_status record_crash(replication_run *run, const cp_impact *impact, cp_error *error)
-{
-    cp_impact_names names;
-    for (int role = 0; role < 2; role++) {
-        names.sumo_id[role] = sumo_bridge_vehicle_id(impact->vehicle[role]);
-        names.sumo_type[role] = sumo_bridge_type_id(impact->state[role].type);
-        names.at_fault[role] = cp_controls_is_at_fault(run->controls, impact->vehicle[role]);
-    }
-    cp_crash_row *row = cp_result_rows_add_crash(run->results);
-    if (row == NULL)
-        return cp_fail_memory(error, "crash");
-    return cp_crash_record_fill(impact, &names, run->fleet, row, error);
-}
-
-static cp_status record_contact(replication_run *run, const cp_impact *impact, const char *verdict,
-                                cp_error *error)
-{
-    cp_contact_row *row = cp_result_rows_add_contact(run->results);
-    if (row == NULL)
-        return cp_fail_memory(error, "contact");
-    row->time_s = impact->time_s;
-    row->contact_m = impact->contact_m;
-    row->verdict = verdict;
-    for (int role = 0; role < 2; role++) {
-        row->vehicle[role] = strdup(sumo_bridge_vehicle_id(impact->vehicle[role]));
-        if (row->vehicle[role] == NULL)
-            return cp_fail_memory(error, "contact");
-    }
-    return CP_OK;
-}
-
-// A confirmed impact is a crash, unless one of the two had its crash earlier in this step or the
-// traffic is still warming up.
-static cp_status take_impact(replication_run *run, const cp_impact *impact, cp_error *error)
-{
-    const char *found_as = FOUND_CRASH;
-    if (impact->verdict != CP_CONTACT_CONFIRMED)
-        found_as = cp_contact_verdict_text(impact->verdict);
-    else if (has_crashed(run, impact->vehicle[0]) || has_crashed(run, impact->vehicle[1]))
-        found_as = VERDICT_AFTER_CRASH;
-    else if (impact->time_s < run->counted_from_s)
-        found_as = VERDICT_WARMUP;
-
-    cp_status status = found_as == FOUND_CRASH ? record_crash(run, impact, error)
-                                               : record_contact(run, impact, found_as, error);
-    if (status == CP_OK)
-        status = cp_cross_check_add_contact(&run->check, impact->vehicle[0], impact->vehicle[1],
-                                            found_as, impact->time_s, error);
-    for (int role = 0; status == CP_OK && role < 2; role++)
-        if (impact->verdict == CP_CONTACT_CONFIRMED && !has_crashed(run, impact->vehicle[role]))
-            status = remember_crashed(run, impact->vehicle[role], error);
-    return status;
-}
-
-static cp_status take_impacts(replication_run *run, cp_error *error)
-{
-    const cp_impact *impacts = NULL;
-    size_t count = 0;
-    run->crashed_count = 0;
-    cp_status status = cp_detector_step(run->detector, run->traffic, cp_controls_is_at_fault,
-                                        run->controls, &impacts, &count, error);
-    for (size_t k = 0; status == CP_OK && k < count; k++)
-        status = take_impact(run, &impacts[k], error);
-    return status;
-}
-
-static cp_status take_sumo_collisions(replication_run *run, cp_error *error)
-{
-    const cp_sumo_collision *collisions = NULL;
-    size_t count = 0;
-    cp_status status = sumo_bridge_collisions(&collisions, &count, error);
-    for (size_t k = 0; status == CP_OK && k < count; k++)
-        status =
-            cp_cross_check_add_report(&run->check, collisions[k].collider, collisions[k].victim,
-                                      collisions[k].type, cp_traffic_time_s(run->traffic), error);
-    return status;
-}
 
 // ---- the step loop -------------------------------------------------------------------------
 
 static cp_status step(replication_run *run, cp_error *error)
 {
-    cp_status status = cp_traffic_step(run->traffic, error);
-    if (status == CP_OK)
-        status = cp_controls_step(run->controls, error);
-    if (status == CP_OK)
-        status = take_impacts(run, error);
-    if (status == CP_OK)
-        status = take_sumo_collisions(run, error);
-
-    // Crashed cars leave the road; what happens to it afterwards is another study's question.
-    for (size_t k = 0; status == CP_OK && k < run->crashed_count; k++)
-        status = cp_traffic_remove(run->traffic, run->crashed[k], error);
+    cp_status status = cp_simulation_step(&run->simulation, error);
+    if (status == CP_OK && run->counterfactual != NULL)
+        status = cp_counterfactual_step(run->counterfactual, error);
     return status;
 }
 
-static cp_status run_steps(replication_run *run, const cp_study *study, cp_error *error)
+static cp_status run_steps(replication_run *run, cp_error *error)
 {
+    const cp_study *study = run->study;
+    const cp_traffic *traffic = run->simulation.traffic;
     long long steps = llround(study->duration_s / study->step_length_s);
     long long warmup_steps = llround(study->warmup_s / study->step_length_s);
     long long done = 0;
     cp_exposure before = {0};
     cp_status status = CP_OK;
-    run->counted_from_s = cp_traffic_time_s(run->traffic) + study->warmup_s;
-    while (status == CP_OK && done < steps && (done == 0 || !cp_traffic_finished(run->traffic))) {
+    while (status == CP_OK && done < steps && (done == 0 || !cp_traffic_finished(traffic))) {
         if (done == warmup_steps)
-            before = cp_traffic_exposure(run->traffic);
+            before = cp_traffic_exposure(traffic);
         status = step(run, error);
         done++;
     }
     if (status != CP_OK)
         return status;
     if (done <= warmup_steps) // the traffic ended before it counted
-        before = cp_traffic_exposure(run->traffic);
-    cp_exposure after = cp_traffic_exposure(run->traffic);
+        before = cp_traffic_exposure(traffic);
+    cp_exposure after = cp_traffic_exposure(traffic);
     long long counted = done > warmup_steps ? done - warmup_steps : 0;
     run->results->simulated_s = (double)counted * study->step_length_s;
     run->results->vehicle_km = after.vehicle_km - before.vehicle_km;
@@ -217,14 +58,73 @@ static cp_status run_steps(replication_run *run, const cp_study *study, cp_error
     return CP_OK;
 }
 
+// ---- what was found ------------------------------------------------------------------------
+
+static cp_status record_crash(replication_run *run, const cp_found_contact *found, cp_error *error)
+{
+    const cp_impact *impact = &found->impact;
+    cp_impact_names names;
+    for (int role = 0; role < 2; role++) {
+        names.sumo_id[role] = sumo_bridge_vehicle_id(impact->vehicle[role]);
+        names.sumo_type[role] = sumo_bridge_type_id(impact->state[role].type);
+        names.at_fault[role] = found->at_fault[role];
+    }
+    cp_crash_row *row = cp_result_rows_add_crash(run->results);
+    if (row == NULL)
+        return cp_fail_memory(error, "crash");
+    return cp_crash_record_fill(impact, &names, run->fleet, row, error);
+}
+
+static cp_status record_contact(replication_run *run, const cp_found_contact *found,
+                                cp_error *error)
+{
+    const cp_impact *impact = &found->impact;
+    cp_contact_row *row = cp_result_rows_add_contact(run->results);
+    if (row == NULL)
+        return cp_fail_memory(error, "contact");
+    row->time_s = impact->time_s;
+    row->contact_m = impact->contact_m;
+    row->verdict = found->found_as;
+    for (int role = 0; role < 2; role++) {
+        row->vehicle[role] = strdup(sumo_bridge_vehicle_id(impact->vehicle[role]));
+        if (row->vehicle[role] == NULL)
+            return cp_fail_memory(error, "contact");
+    }
+    return CP_OK;
+}
+
+static cp_status record_found(replication_run *run, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < run->simulation.found_count; k++) {
+        const cp_found_contact *found = &run->simulation.found[k];
+        status = found->found_as == CP_FOUND_CRASH ? record_crash(run, found, error)
+                                                   : record_contact(run, found, error);
+    }
+    return status;
+}
+
+static cp_status record_counterfactual(replication_run *run, cp_error *error)
+{
+    cp_result_rows *results = run->results;
+    if (run->counterfactual == NULL)
+        return CP_OK;
+    results->counterfactual = calloc(1, sizeof *results->counterfactual);
+    if (results->counterfactual == NULL)
+        return cp_fail_memory(error, "counterfactual pairs");
+    return cp_counterfactual_conclude(run->counterfactual, run->fleet, results->crash,
+                                      results->crash_count, results->counterfactual, error);
+}
+
 // ---- what is left to say at the end --------------------------------------------------------
 
 static cp_status record_cross_check(replication_run *run, const cp_replication_row *replication,
                                     cp_error *error)
 {
-    cp_cross_check_match(&run->check);
-    for (size_t k = 0; k < run->check.sumo_count; k++) {
-        cp_cross_check_pair *pair = &run->check.sumo[k];
+    cp_cross_check *check = &run->simulation.check;
+    cp_cross_check_match(check);
+    for (size_t k = 0; k < check->sumo_count; k++) {
+        cp_cross_check_pair *pair = &check->sumo[k];
         cp_sumo_collision_row *row = cp_result_rows_add_sumo_collision(run->results);
         if (row == NULL)
             return cp_fail_memory(error, "collision of SUMO");
@@ -235,7 +135,7 @@ static cp_status record_cross_check(replication_run *run, const cp_replication_r
         row->found_as = pair->found_as;
         if (row->collider == NULL || row->victim == NULL || row->type == NULL)
             return cp_fail_memory(error, "collision of SUMO");
-        if (strcmp(pair->found_as, FOUND_CRASH) != 0)
+        if (strcmp(pair->found_as, CP_FOUND_CRASH) != 0)
             cp_log_info("scenario %s, seed %llu: SUMO reports a collision (%s) of %s and %s at "
                         "%.2f s, not counted: %s",
                         run->scenario->name, (unsigned long long)replication->seed, row->type,
@@ -250,7 +150,7 @@ static cp_status record_versions(replication_run *run, cp_error *error)
     run->results->sumo_command_line = strdup(sumo_bridge_command_line());
     if (run->results->sumo_version == NULL || run->results->sumo_command_line == NULL)
         return cp_fail_memory(error, "SUMO's command line");
-    return cp_controls_counters_json(run->controls, &run->results->counters, error);
+    return cp_controls_counters_json(run->simulation.controls, &run->results->counters, error);
 }
 
 // ---- public --------------------------------------------------------------------------------
@@ -260,41 +160,50 @@ cp_status cp_replication_run(const cp_study *study, const cp_fleet *fleet,
                              cp_error *error)
 {
     const cp_study_scenario *scenario = &study->scenarios[replication->scenario];
-    replication_run run = {.fleet = fleet, .scenario = scenario, .results = results};
-    cp_status status = start_traffic(study, scenario, replication->seed, &run.traffic, error);
+    replication_run run = {
+        .study = study, .fleet = fleet, .scenario = scenario, .results = results};
+    cp_status status = cp_simulation_begin(study, scenario, &study->variants[replication->variant],
+                                           replication->seed, &run.simulation, error);
+    if (status == CP_OK && study->design == CP_DESIGN_COUNTERFACTUAL)
+        status = cp_counterfactual_create(study, replication->seed, &run.simulation,
+                                          &run.counterfactual, error);
     if (status == CP_OK)
-        status = create_controls(study, scenario, &study->variants[replication->variant],
-                                 replication->seed, run.traffic, &run.controls, error);
+        status = run_steps(&run, error);
+
+    // The surrogate runs when the traffic is over, so that nothing of it is in the way of a branch.
     if (status == CP_OK)
-        status = cp_detector_create(&run.detector, error);
+        status = record_found(&run, error);
     if (status == CP_OK)
-        status = run_steps(&run, study, error);
+        status = record_counterfactual(&run, error);
     if (status == CP_OK)
         status = record_cross_check(&run, replication, error);
     if (status == CP_OK)
         status = record_versions(&run, error);
-    run_destroy(&run);
+    cp_counterfactual_destroy(run.counterfactual);
+    cp_simulation_end(&run.simulation);
     return status;
 }
 
 cp_status cp_replication_probe(const cp_study *study, const cp_study_scenario *scenario,
                                cp_error *error)
 {
-    cp_traffic *traffic = NULL;
-    cp_status status = start_traffic(study, scenario, 1, &traffic, error);
+    cp_simulation simulation;
+    const cp_study_variant nothing = {0};
+    cp_status status = cp_simulation_begin(study, scenario, &nothing, 1, &simulation, error);
     if (status == CP_OK)
-        status = cp_traffic_step(traffic, error);
+        status = cp_traffic_step(simulation.traffic, error);
 
     // Parameters may be good one by one and contradict each other: the controls themselves know.
     for (size_t k = 0; status == CP_OK && k < study->variant_count; k++) {
+        const cp_study_variant *variant = &study->variants[k];
         cp_controls *controls = NULL;
-        status =
-            create_controls(study, scenario, &study->variants[k], 1, traffic, &controls, error);
+        status = cp_controls_create(variant->functions, variant->function_count, study->seed, 1,
+                                    simulation.traffic, &controls, error);
         cp_controls_destroy(controls);
         if (status != CP_OK)
-            cp_error_prefix(error, "variant %s: ", study->variants[k].name);
+            cp_error_prefix(error, "variant %s: ", variant->name);
     }
-    cp_traffic_destroy(traffic);
+    cp_simulation_end(&simulation);
 
     // Whatever keeps a scenario from starting is for its author to mend.
     if (status == CP_TRAFFIC_FAILED) {

@@ -25,6 +25,16 @@ uint64_t cp_plan_seed(const cp_study *study, size_t scenario, size_t variant, si
 
 // ---- the study in JSON ---------------------------------------------------------------------
 
+// {SUMO vehicle type: penetration}
+static json_t *equipment_json(const cp_control_settings *settings)
+{
+    json_t *shares = json_object();
+    for (size_t k = 0; k < settings->share_count; k++)
+        json_object_set_new(shares, settings->shares[k].type,
+                            json_real(settings->shares[k].penetration_1));
+    return shares;
+}
+
 // [{"model": name, "parameters": {...}}], defaults included.
 static json_t *controls_json(const cp_control_settings *settings, size_t count,
                              const char *name_key)
@@ -36,8 +46,10 @@ static json_t *controls_json(const cp_control_settings *settings, size_t count,
         for (size_t p = 0; p < type->parameter_count; p++)
             json_object_set_new(parameters, type->parameters[p].name,
                                 json_real(settings[k].parameter[p]));
-        json_array_append_new(
-            list, json_pack("{s:s, s:o}", name_key, type->name, "parameters", parameters));
+        json_t *entry = json_pack("{s:s, s:o}", name_key, type->name, "parameters", parameters);
+        if (settings[k].share_count > 0)
+            json_object_set_new(entry, "equipment", equipment_json(&settings[k]));
+        json_array_append_new(list, entry);
     }
     return list;
 }
@@ -161,6 +173,27 @@ static cp_status fill_vehicle_models(const cp_study *study, const cp_vehicle_mod
     return CP_OK;
 }
 
+// Whether a variant has replications of its own: the treatments of a counterfactual study have
+// none.
+static bool is_run(const cp_study *study, size_t variant)
+{
+    return study->design != CP_DESIGN_COUNTERFACTUAL || study->variants[variant].is_baseline;
+}
+
+// What a counterfactual replication does besides: its treatments by name, and its section.
+static json_t *counterfactual_json(const cp_study *study, const cp_plan_rows *rows)
+{
+    json_t *treatments = json_object();
+    for (size_t k = 0; k < study->variant_count; k++)
+        if (!is_run(study, k))
+            json_object_set_new(treatments, rows->variant[k].name,
+                                json_string(rows->variant[k].functions));
+    return json_pack("{s:o, s:f, s:I, s:f}", "treatments", treatments, "checkpoint_interval_s",
+                     study->counterfactual.checkpoint_interval_s, "checkpoints",
+                     (json_int_t)study->counterfactual.checkpoints, "time_series_s",
+                     study->counterfactual.time_series_s);
+}
+
 // SHA-256 over all that the outcome of a replication depends on, as JSON.
 static cp_status hash_configuration(const cp_study *study, const cp_vehicle_model_row *models,
                                     const cp_plan_rows *rows, cp_replication_row *replication,
@@ -170,13 +203,16 @@ static cp_status hash_configuration(const cp_study *study, const cp_vehicle_mode
     json_t *hashes = json_array();
     for (size_t k = 0; k < study->vehicle_count; k++)
         json_array_append_new(hashes, json_string(models[k].hash));
-    char *text = take_text(json_pack(
+    json_t *configuration = json_pack(
         "{s:I, s:I, s:f, s:f, s:f, s:s, s:s, s:s, s:s, s:s, s:o}", "study_seed",
         (json_int_t)study->seed, "seed", (json_int_t)replication->seed, "duration_s",
         study->duration_s, "warmup_s", study->warmup_s, "step_length_s", study->step_length_s,
         "sumo_options", scenario->sumo_options, "files", scenario->files, "driver_errors",
         scenario->driver_errors, "functions", rows->variant[replication->variant].functions,
-        "vehicles", rows->study.vehicles, "vehicle_files", hashes));
+        "vehicles", rows->study.vehicles, "vehicle_files", hashes);
+    if (study->design == CP_DESIGN_COUNTERFACTUAL)
+        json_object_set_new(configuration, "counterfactual", counterfactual_json(study, rows));
+    char *text = take_text(configuration);
     if (text == NULL)
         return cp_fail_memory(error, "configuration");
     cp_hash_bytes(text, strlen(text), replication->configuration_hash);
@@ -192,7 +228,9 @@ static cp_status fill_replications(const cp_study *study, const cp_vehicle_model
     if (rows->replication == NULL)
         return cp_fail_memory(error, "replications");
     for (size_t k = 0; k < total; k++) {
-        cp_replication_row *row = &rows->replication[k];
+        if (!is_run(study, k % study->variant_count))
+            continue;
+        cp_replication_row *row = &rows->replication[rows->replication_count];
         row->variant = k % study->variant_count;
         row->scenario = k / study->variant_count % study->scenario_count;
         row->number = k / study->variant_count / study->scenario_count;

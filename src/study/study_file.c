@@ -29,9 +29,22 @@ const char *cp_study_design_text(cp_study_design design)
 
 // ---- the file as libcyaml reads it: everything a string ------------------------------------
 
+typedef struct raw_share {
+    char *type;
+    char *penetration_1;
+} raw_share;
+
 typedef struct raw_control {
     char *name;
+    raw_share *equipment;
+    unsigned equipment_count;
 } raw_control;
+
+typedef struct raw_counterfactual {
+    char *checkpoint_interval_s;
+    char *checkpoints;
+    char *time_series_s;
+} raw_counterfactual;
 
 typedef struct raw_scenario {
     char *name;
@@ -74,6 +87,7 @@ typedef struct raw_study {
     raw_variant *variants;
     unsigned variants_count;
     raw_vehicles vehicles;
+    raw_counterfactual *counterfactual;
 } raw_study;
 
 #define TEXT(key, structure, member)                                                               \
@@ -94,9 +108,15 @@ static const cyaml_schema_field_t DRIVER_ERROR_FIELDS[] = {
 static const cyaml_schema_value_t DRIVER_ERROR = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_control, DRIVER_ERROR_FIELDS)};
 
+static const cyaml_schema_field_t SHARE_FIELDS[] = {TEXT("type", raw_share, type),
+                                                    TEXT("penetration_1", raw_share, penetration_1),
+                                                    CYAML_FIELD_END};
+static const cyaml_schema_value_t SHARE = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_share, SHARE_FIELDS)};
+
 static const cyaml_schema_field_t FUNCTION_FIELDS[] = {
     TEXT("function", raw_control, name), CYAML_FIELD_IGNORE("parameters", CYAML_FLAG_OPTIONAL),
-    CYAML_FIELD_END};
+    LIST_OPTIONAL("equipment", raw_control, equipment, SHARE), CYAML_FIELD_END};
 static const cyaml_schema_value_t FUNCTION = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_control, FUNCTION_FIELDS)};
 
@@ -125,6 +145,11 @@ static const cyaml_schema_field_t VEHICLES_FIELDS[] = {
     TEXT("default", raw_vehicles, standard),
     LIST_OPTIONAL("types", raw_vehicles, types, VEHICLE_TYPE), CYAML_FIELD_END};
 
+static const cyaml_schema_field_t COUNTERFACTUAL_FIELDS[] = {
+    TEXT_OPTIONAL("checkpoint_interval_s", raw_counterfactual, checkpoint_interval_s),
+    TEXT_OPTIONAL("checkpoints", raw_counterfactual, checkpoints),
+    TEXT_OPTIONAL("time_series_s", raw_counterfactual, time_series_s), CYAML_FIELD_END};
+
 static const cyaml_schema_field_t STUDY_FIELDS[] = {
     TEXT("study", raw_study, study),
     TEXT_OPTIONAL("question", raw_study, question),
@@ -138,6 +163,8 @@ static const cyaml_schema_field_t STUDY_FIELDS[] = {
     LIST("scenarios", raw_study, scenarios, SCENARIO),
     LIST("variants", raw_study, variants, VARIANT),
     CYAML_FIELD_MAPPING("vehicles", CYAML_FLAG_DEFAULT, raw_study, vehicles, VEHICLES_FIELDS),
+    CYAML_FIELD_MAPPING_PTR("counterfactual", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
+                            counterfactual, COUNTERFACTUAL_FIELDS),
     CYAML_FIELD_END};
 static const cyaml_schema_value_t STUDY = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, raw_study, STUDY_FIELDS)};
@@ -193,8 +220,8 @@ static cp_status take_design(const cp_yaml_file *file, const char *text, cp_stud
             return CP_OK;
         }
     }
-    return cp_yaml_fail(file, error, "design", "must be paired_seeds or independent, found '%s'",
-                        text);
+    return cp_yaml_fail(file, error, "design",
+                        "must be paired_seeds, independent or counterfactual, found '%s'", text);
 }
 
 static cp_status take_head(const cp_yaml_file *file, const raw_study *raw, cp_study *study,
@@ -231,7 +258,62 @@ static cp_status take_head(const cp_yaml_file *file, const raw_study *raw, cp_st
     return status;
 }
 
+static cp_status take_counterfactual(const cp_yaml_file *file, const raw_counterfactual *raw,
+                                     cp_study *study, cp_error *error)
+{
+    cp_study_counterfactual *section = &study->counterfactual;
+    uint64_t checkpoints = 20;
+    *section = (cp_study_counterfactual){.checkpoint_interval_s = 2.0, .checkpoints = 20};
+    if (raw == NULL)
+        return CP_OK;
+    if (study->design != CP_DESIGN_COUNTERFACTUAL)
+        return cp_yaml_fail(file, error, "counterfactual",
+                            "belongs to the design counterfactual, found the design %s",
+                            cp_study_design_text(study->design));
+    cp_status status =
+        cp_yaml_number(file, "counterfactual.checkpoint_interval_s", raw->checkpoint_interval_s,
+                       0.5, 60, &section->checkpoint_interval_s, error);
+    if (status == CP_OK && raw->checkpoints != NULL)
+        status = take_whole(file, "counterfactual.checkpoints", raw->checkpoints, 1, 200,
+                            &checkpoints, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "counterfactual.time_series_s", raw->time_series_s, 0, 60,
+                                &section->time_series_s, error);
+    section->checkpoints = (size_t)checkpoints;
+    return status;
+}
+
 // ---- scenarios and variants ----------------------------------------------------------------
+
+// Penetration of a function by SUMO vehicle type.
+static cp_status take_equipment(const cp_yaml_file *file, const char *entry_path,
+                                const raw_control *raw, cp_control_settings *settings,
+                                cp_error *error)
+{
+    if (raw->equipment_count == 0)
+        return CP_OK;
+    settings->shares = calloc(raw->equipment_count, sizeof *settings->shares);
+    if (settings->shares == NULL)
+        return cp_fail_memory(error, entry_path);
+    for (size_t k = 0; k < raw->equipment_count; k++) {
+        char path[2 * KEY_PATH_SIZE];
+        cp_equipment_share *share = &settings->shares[k];
+        share->type = strdup(raw->equipment[k].type);
+        if (share->type == NULL)
+            return cp_fail_memory(error, entry_path);
+        settings->share_count++;
+        snprintf(path, sizeof path, "%s.equipment[%zu].type", entry_path, k);
+        for (size_t other = 0; other < k; other++)
+            if (strcmp(settings->shares[other].type, share->type) == 0)
+                return cp_yaml_fail(file, error, path, "repeats '%s'", share->type);
+        snprintf(path, sizeof path, "%s.equipment[%zu].penetration_1", entry_path, k);
+        cp_status status = cp_yaml_number(file, path, raw->equipment[k].penetration_1, 0, 1,
+                                          &share->penetration_1, error);
+        if (status != CP_OK)
+            return status;
+    }
+    return CP_OK;
+}
 
 static cp_status take_controls(const cp_yaml_file *file, cp_control_kind kind,
                                const char *list_path, const char *name_key, const raw_control *raw,
@@ -248,13 +330,15 @@ static cp_status take_controls(const cp_yaml_file *file, cp_control_kind kind,
         snprintf(path, sizeof path, "%s[%zu]", list_path, k);
         cp_status status = cp_control_section_read(file, kind, path, name_key, raw[k].name,
                                                    &(*settings)[k], error);
+        (*settings_count)++;
+        if (status == CP_OK)
+            status = take_equipment(file, path, &raw[k], &(*settings)[k], error);
         if (status != CP_OK)
             return status;
         // Draws depend on the control's name: the same twice would act in lockstep.
         for (size_t other = 0; other < k; other++)
             if ((*settings)[other].type == (*settings)[k].type)
                 return cp_yaml_fail(file, error, path, "repeats '%s'", raw[k].name);
-        (*settings_count)++;
     }
     return CP_OK;
 }
@@ -360,6 +444,35 @@ static cp_status take_variants(const cp_yaml_file *file, const raw_study *raw, c
                         raw->baseline);
 }
 
+// What only the design counterfactual asks of the variants.
+static cp_status check_treatments(const cp_yaml_file *file, const cp_study *study, cp_error *error)
+{
+    if (study->design != CP_DESIGN_COUNTERFACTUAL)
+        return CP_OK;
+    if (study->variant_count < 2)
+        return cp_yaml_fail(file, error, "variants",
+                            "must hold a treatment besides the baseline in a counterfactual study");
+    for (size_t k = 0; k < study->variant_count; k++) {
+        char path[KEY_PATH_SIZE];
+        const cp_study_variant *variant = &study->variants[k];
+        snprintf(path, sizeof path, "variants[%zu].functions", k);
+        if (variant->is_baseline && variant->function_count > 0)
+            return cp_yaml_fail(file, error, path,
+                                "must be empty: the baseline of a counterfactual study drives "
+                                "without functions, found %zu",
+                                variant->function_count);
+        for (size_t f = 0; f < variant->function_count; f++) {
+            snprintf(path, sizeof path, "variants[%zu].functions[%zu].function", k, f);
+            if (variant->functions[f].type->acts_long_before)
+                return cp_yaml_fail(file, error, path,
+                                    "%s acts long before a crash and cannot be judged from a "
+                                    "checkpoint; use the design paired_seeds or independent",
+                                    variant->functions[f].type->name);
+        }
+    }
+    return CP_OK;
+}
+
 static cp_status take_vehicles(const cp_yaml_file *file, const raw_vehicles *raw, cp_study *study,
                                cp_error *error)
 {
@@ -406,12 +519,26 @@ cp_status cp_study_load(const char *path, cp_study *study, cp_error *error)
     if (status == CP_OK)
         status = take_variants(&file, raw, study, error);
     if (status == CP_OK)
+        status = take_counterfactual(&file, raw->counterfactual, study, error);
+    if (status == CP_OK)
+        status = check_treatments(&file, study, error);
+    if (status == CP_OK)
         status = take_vehicles(&file, &raw->vehicles, study, error);
     cp_yaml_close(&file);
 done:
     if (status != CP_OK)
         cp_study_destroy(study);
     return status;
+}
+
+static void destroy_controls(cp_control_settings *settings, size_t count)
+{
+    for (size_t k = 0; k < count; k++) {
+        for (size_t share = 0; share < settings[k].share_count; share++)
+            free(settings[k].shares[share].type);
+        free(settings[k].shares);
+    }
+    free(settings);
 }
 
 void cp_study_destroy(cp_study *study)
@@ -421,13 +548,13 @@ void cp_study_destroy(cp_study *study)
         for (size_t word = 0; word < scenario->sumo_option_count; word++)
             free(scenario->sumo_options[word]);
         free(scenario->sumo_options);
-        free(scenario->driver_errors);
+        destroy_controls(scenario->driver_errors, scenario->driver_error_count);
         free(scenario->sumocfg_path);
         free(scenario->sumocfg);
         free(scenario->name);
     }
     for (size_t k = 0; k < study->variant_count; k++) {
-        free(study->variants[k].functions);
+        destroy_controls(study->variants[k].functions, study->variants[k].function_count);
         free(study->variants[k].name);
     }
     for (size_t k = 0; k < study->vehicle_count; k++) {
@@ -442,6 +569,14 @@ void cp_study_destroy(cp_study *study)
     free(study->content);
     free(study->path);
     *study = (cp_study){0};
+}
+
+size_t cp_study_baseline(const cp_study *study)
+{
+    size_t k = 0;
+    while (k + 1 < study->variant_count && !study->variants[k].is_baseline)
+        k++;
+    return k;
 }
 
 const cp_study_scenario *cp_study_find_scenario(const cp_study *study, const char *name)

@@ -14,7 +14,8 @@
 /* How the seeds of the variants relate. X(name, text in file and database). */
 #define CP_STUDY_DESIGNS(X)                                                                        \
     X(CP_DESIGN_PAIRED_SEEDS, "paired_seeds")                                                      \
-    X(CP_DESIGN_INDEPENDENT, "independent")
+    X(CP_DESIGN_INDEPENDENT, "independent")                                                        \
+    X(CP_DESIGN_COUNTERFACTUAL, "counterfactual")
 
 typedef enum cp_study_design {
 #define CP_STUDY_DESIGN_NAME(name, text) name,
@@ -47,6 +48,13 @@ typedef struct cp_study_vehicle {
     char *model_path; /* resolved */
 } cp_study_vehicle;
 
+/* How counterfactual pairs are made; the design's own section, all of it optional. */
+typedef struct cp_study_counterfactual {
+    double checkpoint_interval_s; /* default 2; [0.5, 60] */
+    size_t checkpoints;           /* kept at a time; default 20; 1 ... 200 */
+    double time_series_s;         /* stored before and after each contact; default 0; [0, 60] */
+} cp_study_counterfactual;
+
 typedef struct cp_study {
     char *path;
     char *content; /* of the file */
@@ -58,6 +66,7 @@ typedef struct cp_study {
     double duration_s;    /* simulated time of a replication, (0, 1e6] */
     double warmup_s;      /* default 0; not counted; < duration_s */
     double step_length_s; /* default 0.05; [0.001, 1] */
+    cp_study_counterfactual counterfactual;
     cp_study_scenario *scenarios;
     size_t scenario_count;
     cp_study_variant *variants;
@@ -70,6 +79,9 @@ typedef struct cp_study {
  * an error the study is destroyed already. */
 CP_MUST_CHECK cp_status cp_study_load(const char *path, cp_study *study, cp_error *error);
 void cp_study_destroy(cp_study *study);
+
+/* Index of the baseline among the variants. */
+size_t cp_study_baseline(const cp_study *study);
 
 /* By name; NULL when there is none. */
 const cp_study_scenario *cp_study_find_scenario(const cp_study *study, const char *name);

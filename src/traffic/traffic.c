@@ -222,6 +222,12 @@ const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle)
     return traffic->source->vehicle_id(vehicle);
 }
 
+const char *cp_traffic_vehicle_type(const cp_traffic *traffic, uint32_t vehicle)
+{
+    const cp_vehicle_motion *motion = cp_traffic_motion_of(traffic, vehicle);
+    return motion && traffic->source->type_id ? traffic->source->type_id(motion->after.type) : "";
+}
+
 const cp_traffic_source *cp_traffic_commands(const cp_traffic *traffic)
 {
     return traffic->source;

@@ -26,6 +26,7 @@ typedef struct cp_traffic_source {
     double (*time_s)(void);
     int (*expected_vehicles)(void);
     const char *(*vehicle_id)(uint32_t vehicle);
+    const char *(*type_id)(uint32_t type); /* may be NULL: types have no names */
     cp_status (*remove)(uint32_t vehicle, cp_error *error);
     cp_status (*set_speed)(uint32_t vehicle, double speed_m_s, cp_error *error);
     cp_status (*set_speed_mode)(uint32_t vehicle, int mode, cp_error *error);
@@ -78,6 +79,8 @@ CP_MUST_CHECK cp_status cp_traffic_road_relation(const cp_traffic *traffic,
                                                  const cp_vehicle_state *other,
                                                  cp_road_relation *relation, cp_error *error);
 const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle);
+/* SUMO vehicle type of a vehicle on the road; "" of any other. */
+const char *cp_traffic_vehicle_type(const cp_traffic *traffic, uint32_t vehicle);
 /* Where to send commands for the coming step. */
 const cp_traffic_source *cp_traffic_commands(const cp_traffic *traffic);
 /* Where the cars are that drift off SUMO's path; commands for the coming step like the others. */

@@ -7,6 +7,7 @@ static const cp_traffic_source SUMO = {
     .time_s = sumo_bridge_time_s,
     .expected_vehicles = sumo_bridge_expected_vehicles,
     .vehicle_id = sumo_bridge_vehicle_id,
+    .type_id = sumo_bridge_type_id,
     .remove = sumo_bridge_remove,
     .set_speed = sumo_bridge_set_speed,
     .set_speed_mode = sumo_bridge_set_speed_mode,

@@ -161,6 +161,33 @@ static void two_cars_of_one_name_are_refused(void **state)
     cp_study_destroy(&study);
 }
 
+static void a_counterfactual_study_runs_its_baseline_only(void **state)
+{
+    const fixture *f = *state;
+    cp_study study;
+    cp_plan_rows rows;
+    char before[CP_HASH_TEXT_SIZE];
+    char *text = study_with("design: paired_seeds", "design: counterfactual");
+    load(f, text, &study, &rows);
+    assert_int_equal(rows.variant_count, 2);
+    assert_int_equal(rows.replication_count, 3);
+    for (size_t k = 0; k < 3; k++) {
+        assert_int_equal(rows.replication[k].variant, 0);
+        assert_int_equal(rows.replication[k].number, k);
+    }
+    strcpy(before, rows.replication[0].configuration_hash);
+    unload(&study, &rows);
+
+    // The outcome of a baseline replication depends on its treatments.
+    char *place = strstr(text, "ttc_s: 1.5");
+    assert_non_null(place);
+    memcpy(place, "ttc_s: 1.6", 10);
+    load(f, text, &study, &rows);
+    assert_string_not_equal(before, rows.replication[0].configuration_hash);
+    unload(&study, &rows);
+    free(text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -174,6 +201,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(files_of_a_scenario_are_listed, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(two_cars_of_one_name_are_refused, fixture_begin,
                                         fixture_end),
+        cmocka_unit_test_setup_teardown(a_counterfactual_study_runs_its_baseline_only,
+                                        fixture_begin, fixture_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -87,7 +87,7 @@ static const struct {
     {"replications: 3", "replications: 0", "study.yaml:5: replications"},
     {"seed: 20261122", "seed: -1", "study.yaml:4: seed"},
     {"design: paired_seeds", "design: crossover",
-     "study.yaml:3: design must be paired_seeds or independent, found 'crossover'"},
+     "study.yaml:3: design must be paired_seeds, independent or counterfactual, found 'crossover'"},
     {"name: left_turn", "name: left turn", "study.yaml:9: scenarios[0].name must be"},
     {"- name: aeb", "- name: baseline", "study.yaml:18: variants[1].name 'baseline' is taken"},
     {"sumocfg: a.sumocfg", "sumocfg: b.sumocfg",
@@ -95,6 +95,21 @@ static const struct {
     {"default: car.yaml", "default: lorry.yaml",
      "study.yaml:25: vehicles.default must be a readable file"},
     {"seed: 20261122", "seed: 1\nbaseline: none", "study.yaml:5: baseline must be the name of"},
+    {"      - function: aeb\n",
+     "      - function: aeb\n        equipment: [{type: van, penetration_1: 1.5}]\n",
+     "variants[1].functions[0].equipment[0].penetration_1 must be between 0 and 1, found 1.5"},
+    {"      - function: aeb\n",
+     "      - function: aeb\n        equipment:\n"
+     "          - {type: van, penetration_1: 1}\n          - {type: van, penetration_1: 0}\n",
+     "study.yaml:23: variants[1].functions[0].equipment[1].type repeats 'van'"},
+    {"design: paired_seeds", "design: paired_seeds\ncounterfactual: {checkpoints: 4}",
+     "study.yaml:4: counterfactual belongs to the design counterfactual, found the design "
+     "paired_seeds"},
+    {"design: paired_seeds", "design: counterfactual\ncounterfactual: {checkpoints: 0}",
+     "study.yaml:4: counterfactual.checkpoints must be between 1 and 200, found 0"},
+    {"design: paired_seeds", "design: counterfactual\nbaseline: aeb",
+     "variants[1].functions must be empty: the baseline of a counterfactual study drives without "
+     "functions, found 1"},
     // Structure: libcyaml's part.
     {"warmup_s: 60", "warmup: 60", "study.yaml:7: Unexpected key: warmup"},
     {"seed: 20261122\n", "", "Missing required mapping field: seed"},
@@ -102,6 +117,37 @@ static const struct {
     {"design: paired_seeds", "design: [paired_seeds", "study.yaml:"},
     {"scenarios:\n", "scenarios: []\nother:\n", "study.yaml:8:"},
 };
+
+static void counterfactual_section_and_equipment(void **state)
+{
+    const fixture *f = *state;
+    cp_study study;
+    cp_error error = {0};
+    char *text = study_with("      - function: aeb\n",
+                            "      - function: aeb\n"
+                            "        equipment: [{type: van, penetration_1: 0.25}]\n");
+    write_text(f, "study.yaml", text);
+    free(text);
+    assert_ok(cp_study_load(f->study, &study, &error), &error);
+    const cp_control_settings *aeb = &study.variants[1].functions[0];
+    assert_int_equal(aeb->share_count, 1);
+    assert_string_equal(aeb->shares[0].type, "van");
+    assert_true(aeb->shares[0].penetration_1 == 0.25 && aeb->parameter[0] == 1.0);
+    cp_study_destroy(&study);
+
+    text = study_with("design: paired_seeds",
+                      "design: counterfactual\n"
+                      "counterfactual: {checkpoint_interval_s: 4, time_series_s: 5}");
+    write_text(f, "study.yaml", text);
+    free(text);
+    assert_ok(cp_study_load(f->study, &study, &error), &error);
+    assert_int_equal(study.design, CP_DESIGN_COUNTERFACTUAL);
+    assert_true(study.counterfactual.checkpoint_interval_s == 4.0);
+    assert_int_equal(study.counterfactual.checkpoints, 20);
+    assert_true(study.counterfactual.time_series_s == 5.0);
+    assert_int_equal(cp_study_baseline(&study), 0);
+    cp_study_destroy(&study);
+}
 
 static void bad_studies_are_told_by_line(void **state)
 {
@@ -137,6 +183,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(reads_everything, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(baseline_can_be_named, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(counterfactual_section_and_equipment, fixture_begin,
+                                        fixture_end),
         cmocka_unit_test_setup_teardown(bad_studies_are_told_by_line, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(missing_and_empty_files, fixture_begin, fixture_end),
     };

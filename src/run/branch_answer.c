@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run/branch_answer.h"
+
+#include "run/branch_process.h"
+
+#include <string.h>
+
+/* First bytes of an answer; samples follow, then texts: ids and types of the crash, then for every
+ * other crash its time and two ids. */
+typedef struct answer_head {
+    cp_found_contact found;
+    size_t sample_count;
+    size_t other_count;
+    bool has_crash;
+} answer_head;
+
+static bool send_text(int to, const char *text)
+{
+    return cp_branch_write(to, text, strlen(text) + 1);
+}
+
+bool cp_branch_answer_send(int to, const cp_found_contact *first, const cp_sample_row *sample,
+                           size_t sample_count, const cp_found_contact *const *others,
+                           size_t other_count)
+{
+    answer_head head = {
+        .sample_count = sample_count, .other_count = other_count, .has_crash = first != NULL};
+    if (first != NULL)
+        head.found = *first;
+    bool sent = cp_branch_write(to, &head, sizeof head);
+    if (sent && sample_count > 0)
+        sent = cp_branch_write(to, sample, sample_count * sizeof *sample);
+    for (int role = 0; sent && first != NULL && role < 2; role++)
+        sent = send_text(to, sumo_bridge_vehicle_id(first->impact.vehicle[role])) &&
+               send_text(to, sumo_bridge_type_id(first->impact.state[role].type));
+    for (size_t k = 0; sent && k < other_count; k++) {
+        const cp_impact *impact = &others[k]->impact;
+        sent = cp_branch_write(to, &impact->time_s, sizeof impact->time_s) &&
+               send_text(to, sumo_bridge_vehicle_id(impact->vehicle[0])) &&
+               send_text(to, sumo_bridge_vehicle_id(impact->vehicle[1]));
+    }
+    return sent;
+}
+
+// The text at *at and past it; NULL when it does not end before end.
+static const char *take_text(const char **at, const char *end)
+{
+    const char *text = *at;
+    const char *zero = text < end ? memchr(text, '\0', (size_t)(end - text)) : NULL;
+    if (zero == NULL)
+        return NULL;
+    *at = zero + 1;
+    return text;
+}
+
+bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *answer)
+{
+    const char *at = bytes, *end = at + size;
+    answer_head head;
+    if (size < sizeof head)
+        return false;
+    memcpy(&head, at, sizeof head);
+    at += sizeof head;
+    if ((size_t)(end - at) / sizeof(cp_sample_row) < head.sample_count)
+        return false;
+    *answer = (cp_branch_answer){.has_crash = head.has_crash,
+                                 .found = head.found,
+                                 .sample = (const cp_sample_row *)(const void *)at,
+                                 .sample_count = head.sample_count,
+                                 .other_count = head.other_count};
+    at += head.sample_count * sizeof(cp_sample_row);
+    for (int role = 0; head.has_crash && role < 2; role++) {
+        answer->ids[role] = take_text(&at, end);
+        answer->types[role] = take_text(&at, end);
+        if (answer->ids[role] == NULL || answer->types[role] == NULL)
+            return false;
+    }
+    answer->others = at;
+    for (size_t k = 0; k < head.other_count; k++) {
+        if ((size_t)(end - at) < sizeof(double))
+            return false;
+        at += sizeof(double);
+        if (take_text(&at, end) == NULL || take_text(&at, end) == NULL)
+            return false;
+    }
+    return at == end;
+}
+
+cp_other_crash cp_branch_answer_other(const cp_branch_answer *answer, const char **at)
+{
+    cp_other_crash other;
+    const char *next = *at != NULL ? *at : answer->others;
+    memcpy(&other.time_s, next, sizeof other.time_s);
+    other.ids[0] = next + sizeof other.time_s;
+    other.ids[1] = other.ids[0] + strlen(other.ids[0]) + 1;
+    *at = other.ids[1] + strlen(other.ids[1]) + 1;
+    return other;
+}

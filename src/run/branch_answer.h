@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RUN_BRANCH_ANSWER_H
+#define RUN_BRANCH_ANSWER_H
+
+#include "run/simulation.h"
+#include "store/counterfactual_rows.h"
+
+/* What a branch is asked and what it answers, as bytes between a process and its own copy. Ids are
+ * texts: the numbers of vehicles first seen after the checkpoint mean nothing to the original. */
+
+typedef struct cp_branch_request {
+    double contact_s; /* SUMO clock of the baseline's contact */
+    char ids[2][512]; /* of the two vehicles, role a first */
+} cp_branch_request;
+
+/* Another crash in the branch, of vehicles not involved. */
+typedef struct cp_other_crash {
+    double time_s;
+    const char *ids[2];
+} cp_other_crash;
+
+typedef struct cp_branch_answer {
+    bool has_crash;         /* one of the two had a confirmed crash */
+    cp_found_contact found; /* its first; by the branch's numbers */
+    const char *ids[2];     /* by role of found */
+    const char *types[2];
+    const cp_sample_row *sample;
+    size_t sample_count;
+    size_t other_count;
+    const char *others; /* packed, see cp_branch_answer_other */
+} cp_branch_answer;
+
+/* Send the answer. others: the found contacts that are crashes without the two vehicles. False when
+ * nobody listens. */
+bool cp_branch_answer_send(int to, const cp_found_contact *first, const cp_sample_row *sample,
+                           size_t sample_count, const cp_found_contact *const *others,
+                           size_t other_count);
+
+/* Read one; texts and samples point into bytes, which are aligned to 16. False for bytes that are
+ * no whole answer. */
+bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *answer);
+
+/* The next of the other crashes; *at: NULL at first. */
+cp_other_crash cp_branch_answer_other(const cp_branch_answer *answer, const char **at);
+
+#endif

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run/simulation.h"
+
+#include <stdlib.h>
+
+const char CP_FOUND_CRASH[] = "crash";
+const char CP_FOUND_AFTER_CRASH[] = "after_crash";
+const char CP_FOUND_WARMUP[] = "warmup";
+
+bool cp_found_is_crash(const cp_found_contact *found)
+{
+    return found->found_as == CP_FOUND_CRASH || found->found_as == CP_FOUND_WARMUP;
+}
+
+// ---- beginning and end ---------------------------------------------------------------------
+
+static cp_status create_controls(const cp_study *study, const cp_study_scenario *scenario,
+                                 const cp_study_variant *variant, uint64_t seed,
+                                 const cp_traffic *traffic, cp_controls **controls, cp_error *error)
+{
+    // Driver errors first, then the functions that are to make up for them.
+    size_t count = scenario->driver_error_count + variant->function_count;
+    cp_control_settings *settings = calloc(count + 1, sizeof *settings);
+    if (settings == NULL)
+        return cp_fail_memory(error, "controls");
+    for (size_t k = 0; k < count; k++)
+        settings[k] = k < scenario->driver_error_count
+                          ? scenario->driver_errors[k]
+                          : variant->functions[k - scenario->driver_error_count];
+    cp_status status =
+        cp_controls_create(settings, count, study->seed, seed, traffic, controls, error);
+    free(settings);
+    return status;
+}
+
+cp_status cp_simulation_begin(const cp_study *study, const cp_study_scenario *scenario,
+                              const cp_study_variant *variant, uint64_t seed,
+                              cp_simulation *simulation, cp_error *error)
+{
+    cp_traffic_options options = {.sumocfg = scenario->sumocfg_path,
+                                  .seed = seed,
+                                  .step_length_s = study->step_length_s,
+                                  .options = (const char *const *)scenario->sumo_options,
+                                  .option_count = scenario->sumo_option_count};
+    *simulation = (cp_simulation){0};
+    cp_status status = cp_traffic_create(&options, &simulation->traffic, error);
+    if (status == CP_OK)
+        status = create_controls(study, scenario, variant, seed, simulation->traffic,
+                                 &simulation->controls, error);
+    if (status == CP_OK)
+        status = cp_detector_create(&simulation->detector, error);
+    if (status == CP_OK)
+        simulation->counted_from_s = cp_traffic_time_s(simulation->traffic) + study->warmup_s;
+    return status;
+}
+
+void cp_simulation_end(cp_simulation *simulation)
+{
+    cp_cross_check_destroy(&simulation->check);
+    cp_detector_destroy(simulation->detector);
+    cp_controls_destroy(simulation->treatment);
+    cp_controls_destroy(simulation->controls);
+    cp_traffic_destroy(simulation->traffic);
+    free(simulation->found);
+    free(simulation->crashed);
+    *simulation = (cp_simulation){0};
+}
+
+// ---- contacts of one step ------------------------------------------------------------------
+
+static bool has_crashed(const cp_simulation *simulation, uint32_t vehicle)
+{
+    for (size_t k = 0; k < simulation->crashed_count; k++)
+        if (simulation->crashed[k] == vehicle)
+            return true;
+    return false;
+}
+
+static cp_status remember_crashed(cp_simulation *simulation, uint32_t vehicle, cp_error *error)
+{
+    if (simulation->crashed_count == simulation->crashed_room) {
+        size_t room = simulation->crashed_room == 0 ? 16 : 2 * simulation->crashed_room;
+        uint32_t *larger = realloc(simulation->crashed, room * sizeof *larger);
+        if (larger == NULL)
+            return cp_fail_memory(error, "crashed vehicles");
+        simulation->crashed = larger;
+        simulation->crashed_room = room;
+    }
+    simulation->crashed[simulation->crashed_count++] = vehicle;
+    return CP_OK;
+}
+
+static cp_status remember_found(cp_simulation *simulation, const cp_impact *impact,
+                                const char *found_as, cp_error *error)
+{
+    if (simulation->found_count == simulation->found_room) {
+        size_t room = simulation->found_room == 0 ? 64 : 2 * simulation->found_room;
+        cp_found_contact *larger = realloc(simulation->found, room * sizeof *larger);
+        if (larger == NULL)
+            return cp_fail_memory(error, "contacts");
+        simulation->found = larger;
+        simulation->found_room = room;
+    }
+    cp_found_contact *found = &simulation->found[simulation->found_count++];
+    *found = (cp_found_contact){.impact = *impact, .found_as = found_as};
+    for (int role = 0; role < 2; role++)
+        found->at_fault[role] =
+            cp_controls_is_at_fault(simulation->controls, impact->vehicle[role]);
+    return CP_OK;
+}
+
+// A confirmed impact is a crash, unless one of the two had its crash earlier in this step or the
+// traffic is still warming up.
+static cp_status take_impact(cp_simulation *simulation, const cp_impact *impact, cp_error *error)
+{
+    const char *found_as = CP_FOUND_CRASH;
+    if (impact->verdict != CP_CONTACT_CONFIRMED)
+        found_as = cp_contact_verdict_text(impact->verdict);
+    else if (has_crashed(simulation, impact->vehicle[0]) ||
+             has_crashed(simulation, impact->vehicle[1]))
+        found_as = CP_FOUND_AFTER_CRASH;
+    else if (impact->time_s < simulation->counted_from_s)
+        found_as = CP_FOUND_WARMUP;
+
+    cp_status status = remember_found(simulation, impact, found_as, error);
+    if (status == CP_OK)
+        status = cp_cross_check_add_contact(&simulation->check, impact->vehicle[0],
+                                            impact->vehicle[1], found_as, impact->time_s, error);
+    for (int role = 0; status == CP_OK && role < 2; role++)
+        if (impact->verdict == CP_CONTACT_CONFIRMED &&
+            !has_crashed(simulation, impact->vehicle[role]))
+            status = remember_crashed(simulation, impact->vehicle[role], error);
+    return status;
+}
+
+static cp_status take_impacts(cp_simulation *simulation, cp_error *error)
+{
+    const cp_impact *impacts = NULL;
+    size_t count = 0;
+    simulation->crashed_count = 0;
+    cp_status status =
+        cp_detector_step(simulation->detector, simulation->traffic, cp_controls_is_at_fault,
+                         simulation->controls, &impacts, &count, error);
+    for (size_t k = 0; status == CP_OK && k < count; k++)
+        status = take_impact(simulation, &impacts[k], error);
+    return status;
+}
+
+static cp_status take_sumo_collisions(cp_simulation *simulation, cp_error *error)
+{
+    const cp_sumo_collision *collisions = NULL;
+    size_t count = 0;
+    cp_status status = sumo_bridge_collisions(&collisions, &count, error);
+    for (size_t k = 0; status == CP_OK && k < count; k++)
+        status = cp_cross_check_add_report(&simulation->check, collisions[k].collider,
+                                           collisions[k].victim, collisions[k].type,
+                                           cp_traffic_time_s(simulation->traffic), error);
+    return status;
+}
+
+cp_status cp_simulation_step(cp_simulation *simulation, cp_error *error)
+{
+    cp_status status = cp_traffic_step(simulation->traffic, error);
+    if (status == CP_OK)
+        status = cp_controls_step(simulation->controls, error);
+    if (status == CP_OK && simulation->treatment != NULL)
+        status = cp_controls_step(simulation->treatment, error);
+    if (status == CP_OK)
+        status = take_impacts(simulation, error);
+    if (status == CP_OK)
+        status = take_sumo_collisions(simulation, error);
+
+    // Crashed cars leave the road; what happens to it afterwards is another study's question.
+    for (size_t k = 0; status == CP_OK && k < simulation->crashed_count; k++)
+        status = cp_traffic_remove(simulation->traffic, simulation->crashed[k], error);
+    return status;
+}

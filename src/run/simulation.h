@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RUN_SIMULATION_H
+#define RUN_SIMULATION_H
+
+#include "control/control.h"
+#include "impact/impact.h"
+#include "run/cross_check.h"
+#include "study/study_file.h"
+
+/* The traffic of one replication, step by step: what the baseline and every branch from a
+ * checkpoint of it go through alike. In the worker process only. */
+
+/* A contact and what became of it; static text. */
+extern const char CP_FOUND_CRASH[];       /* confirmed and counted */
+extern const char CP_FOUND_AFTER_CRASH[]; /* one of the two had crashed in the same step already */
+extern const char CP_FOUND_WARMUP[];      /* confirmed, but before the end of the warm-up */
+
+typedef struct cp_found_contact {
+    cp_impact impact;
+    const char *found_as; /* one of the above, or the verdict of a contact that is no crash */
+    bool at_fault[2];
+} cp_found_contact;
+
+/* Zero-initialise, begin, step, end. */
+typedef struct cp_simulation {
+    cp_traffic *traffic;
+    cp_controls *controls;  /* drivers and functions of the variant */
+    cp_controls *treatment; /* in a branch: functions of the two vehicles; else NULL */
+    cp_detector *detector;
+    cp_cross_check check;
+    double counted_from_s;   /* SUMO clock: end of the warm-up */
+    cp_found_contact *found; /* since the beginning, in order of time, then ids */
+    size_t found_count;
+    size_t found_room;
+    uint32_t *crashed; /* vehicles that crashed in this step */
+    size_t crashed_count;
+    size_t crashed_room;
+} cp_simulation;
+
+/* Start the traffic of a scenario with its drivers and the functions of a variant. Errors:
+ * CP_BAD_INPUT for a configuration that does not start. End it in any case. */
+CP_MUST_CHECK cp_status cp_simulation_begin(const cp_study *study,
+                                            const cp_study_scenario *scenario,
+                                            const cp_study_variant *variant, uint64_t seed,
+                                            cp_simulation *simulation, cp_error *error);
+void cp_simulation_end(cp_simulation *simulation);
+
+/* One step: traffic, controls, contacts; crashed cars leave the road. */
+CP_MUST_CHECK cp_status cp_simulation_step(cp_simulation *simulation, cp_error *error);
+
+/* Whether a found contact is a confirmed crash, counted or not. */
+bool cp_found_is_crash(const cp_found_contact *found);
+
+#endif

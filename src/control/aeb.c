@@ -2,23 +2,23 @@
 #include "control/control_types.h"
 
 #include "control/brake.h"
-#include "control/neighbourhood.h"
-#include "control/sensor.h"
-#include "control/ttc.h"
+#include "control/lookout.h"
 #include "core/units.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Automatic emergency braking: when the time to collision with anything in view falls below a
- * threshold, brake. Request at the first instant the TTC is below ttc_s inside the step, brake
- * after sensor latency and dead time, deceleration rising with limited jerk to what is asked or
- * what the tyres hold. A request is withdrawn when the TTC is above the threshold again before
- * deceleration has begun. SUMO's driver stays in charge of everything else and may brake harder. */
+/* Automatic emergency braking. The request is made at the first instant inside the step at which a
+ * known target is a threat (lookout.h); deceleration begins after sensor latency and dead time and
+ * rises with limited jerk to what is asked or what the tyres hold. A request is withdrawn when the
+ * threat is gone before deceleration has begun. SUMO's driver stays in charge of everything else
+ * and may brake harder. Now and then, at seeded times, it brakes for nothing:
+ * false_activations_per_h. */
 
 enum {
     PENETRATION_1,
     TTC_S,
+    REQUIRED_M_S2,
     DECELERATION_M_S2,
     DEAD_TIME_S,
     JERK_M_S3,
@@ -28,13 +28,25 @@ enum {
     RANGE_M,
     FIELD_OF_VIEW_DEG,
     LATENCY_S,
+    CONFIRMATION_S,
+    DETECTION_PROBABILITY_1,
+    OCCLUSION_1,
+    REAR_END_1,
+    ONCOMING_1,
+    CROSSING_1,
+    TURNING_1,
     RELEASE_TTC_S,
-    HOLD_S
+    HOLD_S,
+    FALSE_ACTIVATIONS_PER_H,
+    FALSE_DURATION_S
 };
 
 static const cp_control_parameter PARAMETERS[] = {
     [PENETRATION_1] = CP_CONTROL_PENETRATION,
     [TTC_S] = {"ttc_s", 1.2, 0.1, 5.0, "brake request below this time to collision, s (assumed)"},
+    [REQUIRED_M_S2] = {"required_deceleration_m_s2", 3.0, 0.0, 20.0,
+                       "and when avoiding the contact takes at least this deceleration, m/s^2: "
+                       "closing speed / (2 TTC) (assumed)"},
     [DECELERATION_M_S2] = {"deceleration_m_s2", 8.0, 0.5, 12.0,
                            "deceleration asked for, m/s^2 (assumed; UN Regulation 152 asks for 5 "
                            "at least)"},
@@ -52,32 +64,54 @@ static const cp_control_parameter PARAMETERS[] = {
     [FIELD_OF_VIEW_DEG] = {"sensor_field_of_view_deg", 60.0, 1.0, 360.0,
                            "whole opening angle of the sensor, degrees (assumed)"},
     [LATENCY_S] = {"sensor_latency_s", 0.1, 0.0, 2.0, "age of what the sensor tells, s (assumed)"},
+    [CONFIRMATION_S] = {"sensor_confirmation_s", 0.2, 0.0, 5.0,
+                        "a target is known after this long in view without a break, s (assumed)"},
+    [DETECTION_PROBABILITY_1] = {"sensor_detection_probability_1", 1.0, 0.0, 1.0,
+                                 "chance that one particular target is ever detected, drawn once "
+                                 "per pair of vehicles (assumed)"},
+    [OCCLUSION_1] = {"sensor_occlusion_1", 1.0, 0.0, 1.0,
+                     "1: other vehicles hide what is behind them; 0: nothing hides anything"},
+    [REAR_END_1] = {"rear_end_1", 1.0, 0.0, 1.0,
+                    "1: acts on targets heading the same way, within 45 degrees; 0: not"},
+    [ONCOMING_1] = {"oncoming_1", 1.0, 0.0, 1.0,
+                    "1: acts on oncoming targets, headings more than 135 degrees apart; 0: not"},
+    [CROSSING_1] = {"crossing_1", 1.0, 0.0, 1.0, "1: acts on crossing targets; 0: not"},
+    [TURNING_1] = {"turning_1", 1.0, 0.0, 1.0,
+                   "1: acts when one of the two turns across the other's way; 0: not"},
     [RELEASE_TTC_S] = {"release_ttc_s", 3.0, 0.1, 20.0,
                        "brakes until no time to collision is below this, s; at least ttc_s "
                        "(assumed)"},
     [HOLD_S] = {"hold_s", 0.5, 0.0, 10.0,
                 "keeps braking this long after the danger has passed or the car stands, s "
                 "(assumed)"},
+    [FALSE_ACTIVATIONS_PER_H] = {"false_activations_per_h", 0.0, 0.0, 3600.0,
+                                 "brakes for nothing, per hour of a car on the road, at seeded "
+                                 "times (assumed)"},
+    [FALSE_DURATION_S] = {"false_duration_s", 0.5, 0.0, 10.0,
+                          "how long it then brakes, dead time not included, s (assumed)"},
 };
 
 /* The function in one car. */
 typedef struct aeb_car {
-    bool is_requesting; /* from the request to the release */
-    bool is_braking;    /* speeds have been asked for */
-    double brake_start_s;
-    double commanded_until_s; /* the speed loss up to here has been commanded */
-    double calm_since_s;      /* no danger, or standing, since then; INFINITY while in danger */
+    cp_braking braking;
+    cp_target_class class; /* of the threat it acts on */
+    bool is_false;         /* braking for nothing, until false_until_s */
+    double false_until_s;
+    double next_false_s;      /* SUMO clock; 0: not drawn yet */
+    uint64_t false_occasions; /* drawn so far */
 } aeb_car;
 
 typedef struct aeb {
     const cp_traffic *traffic;
-    cp_sensor sensor;
-    double deceleration_m_s2;
+    cp_lookout lookout;
+    cp_brake brake; /* but for its start */
+    double delay_s; /* from the threat to the first deceleration */
     double release_ttc_s;
     aeb_car *cars; /* by vehicle number */
     size_t numbers;
-    cp_neighbourhood neighbourhood;
     size_t activations;
+    size_t of_class[CP_TARGET_CLASSES];
+    size_t false_activations;
     double braking_s;
 } aeb;
 
@@ -87,12 +121,29 @@ static cp_status create(const cp_control_context *context, void **state, cp_erro
     if (!created)
         return cp_fail_memory(error, "aeb");
     const double *parameter = context->parameter;
+    double release_ttc_s = fmax(parameter[RELEASE_TTC_S], parameter[TTC_S]);
+    cp_lookout_settings settings = {
+        .sensor = {parameter[RANGE_M], cp_rad_from_deg(parameter[FIELD_OF_VIEW_DEG]),
+                   parameter[LATENCY_S]},
+        .confirmation_s = parameter[CONFIRMATION_S],
+        .detection_probability_1 = parameter[DETECTION_PROBABILITY_1],
+        .has_occlusion = parameter[OCCLUSION_1] >= 0.5,
+        .has_class = {[CP_TARGET_REAR_END] = parameter[REAR_END_1] >= 0.5,
+                      [CP_TARGET_ONCOMING] = parameter[ONCOMING_1] >= 0.5,
+                      [CP_TARGET_CROSSING] = parameter[CROSSING_1] >= 0.5,
+                      [CP_TARGET_TURNING] = parameter[TURNING_1] >= 0.5},
+        .ttc_s = parameter[TTC_S],
+        .required_m_s2 = parameter[REQUIRED_M_S2],
+        .horizon_s = fmax(release_ttc_s, parameter[TTC_S] + parameter[CONFIRMATION_S] + 0.5),
+        .key = context->seed_key,
+    };
     created->traffic = context->traffic;
-    created->sensor = (cp_sensor){parameter[RANGE_M], cp_rad_from_deg(parameter[FIELD_OF_VIEW_DEG]),
-                                  parameter[LATENCY_S]};
-    created->deceleration_m_s2 =
+    created->lookout = cp_lookout_create(&settings, context->traffic);
+    created->brake.jerk_m_s3 = parameter[JERK_M_S3];
+    created->brake.deceleration_m_s2 =
         fmin(parameter[DECELERATION_M_S2], parameter[FRICTION_1] * CP_G0_M_S2);
-    created->release_ttc_s = fmax(parameter[RELEASE_TTC_S], parameter[TTC_S]);
+    created->delay_s = parameter[LATENCY_S] + parameter[DEAD_TIME_S];
+    created->release_ttc_s = release_ttc_s;
     *state = created;
     return CP_OK;
 }
@@ -100,7 +151,7 @@ static cp_status create(const cp_control_context *context, void **state, cp_erro
 static void destroy(void *state)
 {
     aeb *self = state;
-    cp_neighbourhood_clear(&self->neighbourhood);
+    cp_lookout_destroy(&self->lookout);
     free(self->cars);
     free(self);
 }
@@ -119,139 +170,106 @@ static cp_status reserve(aeb *self, uint32_t vehicle, cp_error *error)
     return CP_OK;
 }
 
-// What the sensor's tracker makes of a vehicle. SUMO's heading jumps where a lane change begins or
-// ends; a yaw rate that no tyre could follow is such a jump and not a turn.
-static cp_moving_rectangle track(const cp_vehicle_motion *motion, double friction_1)
+static void request(aeb *self, aeb_car *car, double instant_s)
 {
-    const cp_vehicle_state *state = &motion->after;
-    cp_vec2 heading = cp_vec2_heading(state->yaw_rad);
-    cp_vec2 front_m = {state->front_x_m, state->front_y_m};
-    cp_moving_rectangle moving = {
-        .rectangle = {cp_vec2_sub(front_m, cp_vec2_scale(heading, 0.5 * state->length_m)),
-                      state->yaw_rad, state->length_m, state->width_m},
-        .velocity_m_s = cp_vec2_scale(heading, state->speed_m_s),
-        .yaw_rate_rad_s = motion->yaw_rate_rad_s,
-    };
-    if (fabs(moving.yaw_rate_rad_s * state->speed_m_s) > friction_1 * CP_G0_M_S2)
-        moving.yaw_rate_rad_s = 0.0;
-    return moving;
+    cp_brake brake = self->brake;
+    brake.start_s = instant_s + self->delay_s;
+    cp_braking_begin(&car->braking, &brake);
 }
 
-/* A look round from one car. */
-typedef struct look {
-    const aeb *self;
-    uint32_t vehicle;
-    double friction_1;
-    double horizon_s;
-    cp_moving_rectangle own;
-    double ttc_s; /* smallest so far */
-} look;
-
-static void look_at(void *context, const cp_vehicle_motion *motion)
+// Seeded times of a Poisson process on SUMO's clock, whenever the car came and whatever the step.
+static bool is_false_alarm(aeb *self, const cp_control_context *context, uint32_t vehicle,
+                           aeb_car *car, double *instant_s)
 {
-    look *looking = context;
-    if (motion->after.vehicle == looking->vehicle)
-        return;
-    cp_moving_rectangle target = track(motion, looking->friction_1);
-    double ttc_s = cp_ttc_s(&looking->own, &target, looking->horizon_s);
-    // Few are on a collision course: whether they are in view is asked last.
-    if (ttc_s < looking->ttc_s &&
-        cp_sensor_sees(&looking->self->sensor, &looking->own.rectangle, &target.rectangle))
-        looking->ttc_s = ttc_s;
+    double rate_per_h = context->parameter[FALSE_ACTIVATIONS_PER_H];
+    double now_s = cp_traffic_time_s(self->traffic);
+    double before_s = now_s - cp_traffic_step_length_s(self->traffic);
+    if (rate_per_h <= 0.0)
+        return false;
+    cp_rng_key key = cp_rng_key_text(context->seed_key, "false activation");
+    key = cp_rng_key_text(key, cp_traffic_vehicle_id(self->traffic, vehicle));
+    while (car->next_false_s <= before_s)
+        car->next_false_s += cp_rng_exponential(key, car->false_occasions++, 3600.0 / rate_per_h);
+    *instant_s = car->next_false_s;
+    return car->next_false_s <= now_s;
 }
 
-static double smallest_ttc_s(const aeb *self, const cp_control_context *context,
-                             const cp_vehicle_motion *motion, double horizon_s)
-{
-    double friction_1 = context->parameter[FRICTION_1];
-    look looking = {self,      motion->after.vehicle,     friction_1,
-                    horizon_s, track(motion, friction_1), INFINITY};
-    cp_neighbourhood_visit(&self->neighbourhood, motion->after.front_x_m, motion->after.front_y_m,
-                           look_at, &looking);
-    return looking.ttc_s;
-}
-
-// The danger has passed before the brakes took hold: withdraw the request.
-static bool is_withdrawn(const aeb *self, const cp_control_context *context,
-                         const cp_vehicle_motion *motion, const aeb_car *car)
-{
-    double threshold_s = context->parameter[TTC_S];
-    return cp_traffic_time_s(self->traffic) < car->brake_start_s &&
-           !(smallest_ttc_s(self, context, motion, threshold_s) < threshold_s);
-}
-
-// Free driving: request braking when the TTC has fallen below the threshold. It falls by a second
-// each second while both keep on, so the instant it crossed lies threshold - TTC back, in this
-// step.
+// Free driving: whether to request braking.
 static void watch(aeb *self, const cp_control_context *context, const cp_vehicle_motion *motion,
                   aeb_car *car)
 {
     const double *parameter = context->parameter;
-    double speed_m_s = motion->after.speed_m_s;
+    double speed_m_s = motion->after.speed_m_s, instant_s;
+    cp_threat threat;
     if (speed_m_s < parameter[SPEED_MIN_M_S] || speed_m_s > parameter[SPEED_MAX_M_S])
         return;
-    double ttc_s = smallest_ttc_s(self, context, motion, parameter[TTC_S]);
-    if (!(ttc_s < parameter[TTC_S]))
-        return;
-    double back_s = fmin(parameter[TTC_S] - ttc_s, cp_traffic_step_length_s(self->traffic));
-    double request_s = cp_traffic_time_s(self->traffic) - back_s;
-    car->is_requesting = true;
-    car->brake_start_s = request_s + self->sensor.latency_s + parameter[DEAD_TIME_S];
-    car->commanded_until_s = car->brake_start_s;
-    car->calm_since_s = INFINITY;
+    if (cp_lookout_threat(&self->lookout, motion, &threat)) {
+        request(self, car, threat.instant_s);
+        car->class = threat.class;
+        car->is_false = false;
+    } else if (is_false_alarm(self, context, motion->after.vehicle, car, &instant_s)) {
+        request(self, car, instant_s);
+        car->is_false = true;
+        car->false_until_s = car->braking.brake.start_s + parameter[FALSE_DURATION_S];
+    }
 }
 
-// Whether the car may be handed back to its driver.
-static bool is_over(const aeb *self, const cp_control_context *context,
-                    const cp_vehicle_motion *motion, aeb_car *car)
+// The request goes on, is withdrawn before deceleration has begun, or ends.
+static void follow(aeb *self, const cp_control_context *context, const cp_vehicle_motion *motion,
+                   aeb_car *car)
 {
     double now_s = cp_traffic_time_s(self->traffic);
-    if (now_s < car->brake_start_s)
-        return false;
-    bool is_standing = motion->after.speed_m_s < 0.1;
-    bool is_calm =
-        is_standing || smallest_ttc_s(self, context, motion, self->release_ttc_s) == INFINITY;
-    if (!is_calm)
-        car->calm_since_s = INFINITY;
-    else if (car->calm_since_s == INFINITY)
-        car->calm_since_s = now_s;
-    return is_calm && now_s - car->calm_since_s >= context->parameter[HOLD_S];
+    cp_threat threat;
+    if (car->is_false) {
+        car->braking.is_requesting = now_s < car->false_until_s;
+        return;
+    }
+    if (now_s < car->braking.brake.start_s) {
+        car->braking.is_requesting = cp_lookout_threat(&self->lookout, motion, &threat);
+        return;
+    }
+    bool is_calm = motion->after.speed_m_s < 0.1 ||
+                   !cp_lookout_is_danger(&self->lookout, motion, self->release_ttc_s);
+    if (cp_braking_is_over(&car->braking, now_s, is_calm, context->parameter[HOLD_S]))
+        car->braking.is_requesting = false;
 }
 
-// Command the speed at the end of the coming step. What was lost of the first step between trigger
-// and command is caught up, so that the speed is the profile's at the end of every step.
-static cp_status brake(aeb *self, const cp_control_context *context,
-                       const cp_vehicle_motion *motion, aeb_car *car, cp_error *error)
+static void count_activation(aeb *self, const aeb_car *car)
 {
-    uint32_t vehicle = motion->after.vehicle;
-    double step_s = cp_traffic_step_length_s(self->traffic);
-    double end_s = cp_traffic_time_s(self->traffic) + step_s;
-    cp_brake profile = {car->brake_start_s, context->parameter[JERK_M_S3], self->deceleration_m_s2};
-    double loss_m_s = cp_brake_speed_loss_m_s(&profile, end_s) -
-                      cp_brake_speed_loss_m_s(&profile, car->commanded_until_s);
-    if (loss_m_s <= 0.0)
-        return CP_OK;
-
-    self->activations += !car->is_braking;
-    car->is_braking = true;
-    car->commanded_until_s = end_s;
-    self->braking_s += step_s;
-    return cp_actuation_request(context->actuation, vehicle,
-                                fmax(motion->after.speed_m_s - loss_m_s, 0.0), loss_m_s / step_s,
-                                error);
+    self->activations++;
+    if (car->is_false)
+        self->false_activations++;
+    else
+        self->of_class[car->class]++;
 }
 
 static cp_status step_car(aeb *self, const cp_control_context *context,
                           const cp_vehicle_motion *motion, cp_error *error)
 {
     aeb_car *car = &self->cars[motion->after.vehicle];
-    if (!car->is_requesting)
+    // Too slow to act: nothing is looked for, which spares the queues at junctions.
+    if (!car->braking.is_requesting &&
+        motion->after.speed_m_s < context->parameter[SPEED_MIN_M_S]) {
+        cp_lookout_forget(&self->lookout, motion->after.vehicle);
+        return CP_OK;
+    }
+    cp_status status = cp_lookout_track(&self->lookout, motion, error);
+    if (status != CP_OK)
+        return status;
+    if (car->braking.is_requesting)
+        follow(self, context, motion, car);
+    else
         watch(self, context, motion, car);
-    else if (is_withdrawn(self, context, motion, car))
-        car->is_requesting = false;
-    else if (is_over(self, context, motion, car))
-        car->is_requesting = car->is_braking = false;
-    return car->is_requesting ? brake(self, context, motion, car, error) : CP_OK;
+    if (!car->braking.is_requesting)
+        return CP_OK;
+    bool was_braking = car->braking.is_braking;
+    status = cp_braking_command(&car->braking, self->traffic, motion, context->actuation, error);
+    if (car->braking.is_braking) {
+        self->braking_s += cp_traffic_step_length_s(self->traffic);
+        if (!was_braking)
+            count_activation(self, car);
+    }
+    return status;
 }
 
 static cp_status step(void *state, const cp_control_context *context, cp_error *error)
@@ -261,16 +279,13 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
         return CP_OK;
     size_t count;
     const cp_vehicle_motion *motions = cp_traffic_motions(self->traffic, &count);
-    // Fronts lie at most one sensor range and a long vehicle apart when the target is in view.
-    double cell_m = self->sensor.range_m + 20.0;
-    cp_status status = cp_neighbourhood_fill(&self->neighbourhood, cell_m, motions, count, error);
+    cp_status status = cp_lookout_step(&self->lookout, error);
     for (size_t k = 0; k < count && status == CP_OK; k++) {
-        status = reserve(self, motions[k].after.vehicle, error);
-        if (status != CP_OK)
-            return status;
         bool has = false;
-        status = cp_equipment_has(context->equipment, self->traffic, motions[k].after.vehicle, &has,
-                                  error);
+        uint32_t vehicle = motions[k].after.vehicle;
+        status = reserve(self, vehicle, error);
+        if (status == CP_OK)
+            status = cp_equipment_has(context->equipment, self->traffic, vehicle, &has, error);
         if (status == CP_OK && has)
             status = step_car(self, context, &motions[k], error);
     }
@@ -280,19 +295,32 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
 static size_t counters(const void *state, const char **names, double *values, size_t room)
 {
     const aeb *self = state;
-    if (room < 2)
+    const struct {
+        const char *name;
+        double value;
+    } rows[] = {
+        {"activations", (double)self->activations},
+        {"activations_rear_end", (double)self->of_class[CP_TARGET_REAR_END]},
+        {"activations_oncoming", (double)self->of_class[CP_TARGET_ONCOMING]},
+        {"activations_crossing", (double)self->of_class[CP_TARGET_CROSSING]},
+        {"activations_turning", (double)self->of_class[CP_TARGET_TURNING]},
+        {"activations_for_nothing", (double)self->false_activations},
+        {"braking_s", self->braking_s},
+    };
+    size_t count = sizeof rows / sizeof *rows;
+    if (room < count)
         return 0;
-    names[0] = "activations";
-    values[0] = (double)self->activations;
-    names[1] = "braking_s";
-    values[1] = self->braking_s;
-    return 2;
+    for (size_t k = 0; k < count; k++) {
+        names[k] = rows[k].name;
+        values[k] = rows[k].value;
+    }
+    return count;
 }
 
 const cp_control_type CP_CONTROL_AEB = {
     .name = "aeb",
     .kind = CP_CONTROL_FUNCTION,
-    .what = "automatic emergency braking triggered by time to collision",
+    .what = "automatic emergency braking by time to collision and required deceleration",
     .parameters = PARAMETERS,
     .parameter_count = sizeof PARAMETERS / sizeof *PARAMETERS,
     .create = create,

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "control/brake.h"
 
+#include <math.h>
+
 double cp_brake_speed_loss_m_s(const cp_brake *brake, double time_s)
 {
     double elapsed_s = time_s - brake->start_s;
@@ -10,4 +12,44 @@ double cp_brake_speed_loss_m_s(const cp_brake *brake, double time_s)
     if (elapsed_s < rise_s)
         return 0.5 * brake->jerk_m_s3 * elapsed_s * elapsed_s;
     return brake->deceleration_m_s2 * (elapsed_s - 0.5 * rise_s);
+}
+
+double cp_brake_deceleration_m_s2(const cp_brake *brake, double time_s)
+{
+    return fmin(fmax(time_s - brake->start_s, 0.0) * brake->jerk_m_s3, brake->deceleration_m_s2);
+}
+
+void cp_braking_begin(cp_braking *braking, const cp_brake *brake)
+{
+    *braking = (cp_braking){.is_requesting = true,
+                            .brake = *brake,
+                            .commanded_until_s = brake->start_s,
+                            .calm_since_s = INFINITY};
+}
+
+cp_status cp_braking_command(cp_braking *braking, const cp_traffic *traffic,
+                             const cp_vehicle_motion *motion, cp_actuation *actuation,
+                             cp_error *error)
+{
+    double end_s = cp_traffic_time_s(traffic) + cp_traffic_step_length_s(traffic);
+    double loss_m_s = cp_brake_speed_loss_m_s(&braking->brake, end_s) -
+                      cp_brake_speed_loss_m_s(&braking->brake, braking->commanded_until_s);
+    if (loss_m_s <= 0.0)
+        return CP_OK;
+    braking->is_braking = true;
+    braking->commanded_until_s = end_s;
+    return cp_actuation_request(actuation, motion->after.vehicle,
+                                fmax(motion->after.speed_m_s - loss_m_s, 0.0),
+                                cp_brake_deceleration_m_s2(&braking->brake, end_s), error);
+}
+
+bool cp_braking_is_over(cp_braking *braking, double now_s, bool is_calm, double hold_s)
+{
+    if (now_s < braking->brake.start_s)
+        return false;
+    if (!is_calm)
+        braking->calm_since_s = INFINITY;
+    else if (braking->calm_since_s == INFINITY)
+        braking->calm_since_s = now_s;
+    return is_calm && now_s - braking->calm_since_s >= hold_s;
 }

@@ -13,6 +13,8 @@ const cp_control_type *const CP_CONTROL_TYPE[] = {
     &CP_CONTROL_RISKY_OVERTAKING,
     &CP_CONTROL_LANE_DRIFT,
     &CP_CONTROL_AEB,
+    &CP_CONTROL_FCW,
+    &CP_CONTROL_ISA,
 };
 const size_t CP_CONTROL_TYPE_COUNT = sizeof CP_CONTROL_TYPE / sizeof *CP_CONTROL_TYPE;
 

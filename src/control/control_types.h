@@ -15,5 +15,9 @@ extern const cp_control_type CP_CONTROL_RISKY_OVERTAKING;
 extern const cp_control_type CP_CONTROL_LANE_DRIFT;
 /* Automatic emergency braking. */
 extern const cp_control_type CP_CONTROL_AEB;
+/* Forward collision warning: the driver brakes after a reaction time. */
+extern const cp_control_type CP_CONTROL_FCW;
+/* Intelligent speed assistance: limits the speed. */
+extern const cp_control_type CP_CONTROL_ISA;
 
 #endif

@@ -19,6 +19,25 @@ cp_moving_rectangle cp_moving_rectangle_of(const cp_vehicle_motion *motion)
     return moving;
 }
 
+cp_moving_rectangle cp_moving_rectangle_inside(const cp_vehicle_motion *motion, double fraction)
+{
+    if (fraction >= 1.0)
+        return cp_moving_rectangle_of(motion);
+    const cp_vehicle_state *before = &motion->before, *after = &motion->after;
+    cp_vehicle_motion inside = *motion;
+    double gain_m_s = after->speed_m_s - before->speed_m_s;
+    double mean_m_s = before->speed_m_s + 0.5 * gain_m_s;
+    double share_1 = fraction;
+    if (mean_m_s > 1e-9)
+        share_1 = fraction * (before->speed_m_s + 0.5 * gain_m_s * fraction) / mean_m_s;
+    double turn_rad = cp_wrap_angle(after->yaw_rad - before->yaw_rad);
+    inside.after.front_x_m = before->front_x_m + share_1 * (after->front_x_m - before->front_x_m);
+    inside.after.front_y_m = before->front_y_m + share_1 * (after->front_y_m - before->front_y_m);
+    inside.after.yaw_rad = before->yaw_rad + fraction * turn_rad;
+    inside.after.speed_m_s = before->speed_m_s + fraction * gain_m_s;
+    return cp_moving_rectangle_of(&inside);
+}
+
 cp_rectangle cp_moving_rectangle_at(const cp_moving_rectangle *moving, double time_s)
 {
     // Chord of the arc: half the turn away from the tangent, shorter by sin(x)/x.

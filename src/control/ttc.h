@@ -18,6 +18,10 @@ typedef struct cp_moving_rectangle {
  * lateral acceleration is such a jump and not a turn, and counts as 0. */
 cp_moving_rectangle cp_moving_rectangle_of(const cp_vehicle_motion *motion);
 
+/* The same inside the step, fraction 0 = beginning, 1 = end: constant acceleration along the chord,
+ * heading turned evenly. Needs a motion whose vehicle was present. */
+cp_moving_rectangle cp_moving_rectangle_inside(const cp_vehicle_motion *motion, double fraction);
+
 /* Where it is time_s from now. */
 cp_rectangle cp_moving_rectangle_at(const cp_moving_rectangle *moving, double time_s);
 

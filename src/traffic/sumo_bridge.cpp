@@ -642,6 +642,21 @@ cp_status sumo_bridge_speed_mode(uint32_t vehicle, int *mode, cp_error *error)
     });
 }
 
+cp_status sumo_bridge_set_speed_factor(uint32_t vehicle, double factor_1, cp_error *error)
+{
+    return command_vehicle("set speed factor", vehicle, error, [=](const std::string &id) {
+        libsumo::Vehicle::setSpeedFactor(id, factor_1);
+    });
+}
+
+cp_status sumo_bridge_speed_factor(uint32_t vehicle, double *factor_1, cp_error *error)
+{
+    *factor_1 = 0.0;
+    return command_vehicle("get speed factor", vehicle, error, [=](const std::string &id) {
+        *factor_1 = libsumo::Vehicle::getSpeedFactor(id);
+    });
+}
+
 cp_status sumo_bridge_set_parameter(uint32_t vehicle, const char *key, const char *value,
                                     cp_error *error)
 {

@@ -119,6 +119,11 @@ CP_MUST_CHECK cp_status sumo_bridge_set_speed(uint32_t vehicle, double speed_m_s
 /* SUMO's speed mode bit set (31 = all checks on). */
 CP_MUST_CHECK cp_status sumo_bridge_set_speed_mode(uint32_t vehicle, int mode, cp_error *error);
 CP_MUST_CHECK cp_status sumo_bridge_speed_mode(uint32_t vehicle, int *mode, cp_error *error);
+/* Factor on the speed limits that the vehicle's driver takes as his own, > 0. */
+CP_MUST_CHECK cp_status sumo_bridge_set_speed_factor(uint32_t vehicle, double factor_1,
+                                                     cp_error *error);
+CP_MUST_CHECK cp_status sumo_bridge_speed_factor(uint32_t vehicle, double *factor_1,
+                                                 cp_error *error);
 CP_MUST_CHECK cp_status sumo_bridge_set_parameter(uint32_t vehicle, const char *key,
                                                   const char *value, cp_error *error);
 

@@ -31,6 +31,8 @@ typedef struct cp_traffic_source {
     cp_status (*set_speed)(uint32_t vehicle, double speed_m_s, cp_error *error);
     cp_status (*set_speed_mode)(uint32_t vehicle, int mode, cp_error *error);
     cp_status (*speed_mode)(uint32_t vehicle, int *mode, cp_error *error);
+    cp_status (*set_speed_factor)(uint32_t vehicle, double factor_1, cp_error *error);
+    cp_status (*speed_factor)(uint32_t vehicle, double *factor_1, cp_error *error);
     cp_status (*set_parameter)(uint32_t vehicle, const char *key, const char *value,
                                cp_error *error);
     /* May be NULL: all roads meet. */

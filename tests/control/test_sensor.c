@@ -19,7 +19,7 @@ static bool sees(double yaw_rad, double ahead_m, double left_m, double target_ya
     cp_rectangle own = {cp_pose_to_world(pose, (cp_vec2){-2.0, 0.0}), yaw_rad, 4.0, 2.0};
     cp_rectangle target = {cp_pose_to_world(pose, (cp_vec2){ahead_m, left_m}),
                            yaw_rad + target_yaw_rad, 4.0, 2.0};
-    return cp_sensor_sees(&SENSOR, &own, &target);
+    return cp_sensor_sees(&SENSOR, &own, &target, NULL, 0);
 }
 
 static void sees_ahead_within_range_and_angle(void **unused)

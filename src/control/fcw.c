@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "control/control_types.h"
+
+#include "control/brake.h"
+#include "control/lookout.h"
+#include "core/units.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Forward collision warning. At the first instant inside the step at which a known target is a
+ * threat (lookout.h), by default of the same direction or oncoming, the driver is warned; a share
+ * of drivers heeds it and brakes after a log-normally distributed reaction time, until the danger
+ * has passed. SUMO's driver stays in charge of everything else and may brake earlier or harder. */
+
+enum {
+    PENETRATION_1,
+    TTC_S,
+    REQUIRED_M_S2,
+    REACTION_MEDIAN_S,
+    REACTION_SPREAD_1,
+    COMPLIANCE_1,
+    DECELERATION_M_S2,
+    JERK_M_S3,
+    FRICTION_1,
+    SPEED_MIN_M_S,
+    RANGE_M,
+    FIELD_OF_VIEW_DEG,
+    LATENCY_S,
+    CONFIRMATION_S,
+    DETECTION_PROBABILITY_1,
+    OCCLUSION_1,
+    REAR_END_1,
+    ONCOMING_1,
+    CROSSING_1,
+    TURNING_1,
+    RELEASE_TTC_S,
+    HOLD_S
+};
+
+static const cp_control_parameter PARAMETERS[] = {
+    [PENETRATION_1] = CP_CONTROL_PENETRATION,
+    [TTC_S] = {"ttc_s", 2.4, 0.1, 10.0, "warning below this time to collision, s (assumed)"},
+    [REQUIRED_M_S2] = {"required_deceleration_m_s2", 2.0, 0.0, 20.0,
+                       "and when avoiding the contact takes at least this deceleration, m/s^2 "
+                       "(assumed)"},
+    [REACTION_MEDIAN_S] = {"reaction_median_s", 1.0, 0.0, 5.0,
+                           "median of the drivers' reaction time from warning to brake, s "
+                           "(assumed)"},
+    [REACTION_SPREAD_1] = {"reaction_spread_1", 0.3, 0.0, 2.0,
+                           "standard deviation of its logarithm (assumed)"},
+    [COMPLIANCE_1] = {"compliance_1", 0.8, 0.0, 1.0,
+                      "share of drivers who heed warnings, drawn once per vehicle (assumed)"},
+    [DECELERATION_M_S2] = {"deceleration_m_s2", 6.0, 0.5, 12.0,
+                           "how hard a warned driver brakes, m/s^2 (assumed)"},
+    [JERK_M_S3] = {"jerk_m_s3", 20.0, 1.0, 1000.0, "rise of deceleration, m/s^3 (assumed)"},
+    [FRICTION_1] = {"friction_1", 0.9, 0.05, 1.5,
+                    "friction coefficient; deceleration stays below friction times 9.80665 m/s^2 "
+                    "(assumed: dry road)"},
+    [SPEED_MIN_M_S] = {"speed_min_m_s", 8.0, 0.0, 100.0,
+                       "no warning below this own speed, m/s (assumed)"},
+    [RANGE_M] = {"sensor_range_m", 120.0, 1.0, 500.0, "how far the sensor sees, m (assumed)"},
+    [FIELD_OF_VIEW_DEG] = {"sensor_field_of_view_deg", 40.0, 1.0, 360.0,
+                           "whole opening angle of the sensor, degrees (assumed)"},
+    [LATENCY_S] = {"sensor_latency_s", 0.1, 0.0, 2.0, "age of what the sensor tells, s (assumed)"},
+    [CONFIRMATION_S] = {"sensor_confirmation_s", 0.2, 0.0, 5.0,
+                        "a target is known after this long in view without a break, s (assumed)"},
+    [DETECTION_PROBABILITY_1] = {"sensor_detection_probability_1", 1.0, 0.0, 1.0,
+                                 "chance that one particular target is ever detected, drawn once "
+                                 "per pair of vehicles (assumed)"},
+    [OCCLUSION_1] = {"sensor_occlusion_1", 1.0, 0.0, 1.0,
+                     "1: other vehicles hide what is behind them; 0: nothing hides anything"},
+    [REAR_END_1] = {"rear_end_1", 1.0, 0.0, 1.0,
+                    "1: warns of targets heading the same way; 0: not"},
+    [ONCOMING_1] = {"oncoming_1", 1.0, 0.0, 1.0, "1: warns of oncoming targets; 0: not"},
+    [CROSSING_1] = {"crossing_1", 0.0, 0.0, 1.0, "1: warns of crossing targets; 0: not"},
+    [TURNING_1] = {"turning_1", 0.0, 0.0, 1.0,
+                   "1: warns when one of the two turns across the other's way; 0: not"},
+    [RELEASE_TTC_S] = {"release_ttc_s", 4.0, 0.1, 20.0,
+                       "the driver brakes until no time to collision is below this, s; at least "
+                       "ttc_s (assumed)"},
+    [HOLD_S] = {"hold_s", 0.5, 0.0, 10.0,
+                "and this long after the danger has passed or the car stands, s (assumed)"},
+};
+
+/* The function, and the warned driver, in one car. */
+typedef struct fcw_car {
+    cp_braking braking;
+    bool is_warned; /* from the warning until the danger has passed */
+    uint64_t warnings;
+} fcw_car;
+
+typedef struct fcw {
+    const cp_traffic *traffic;
+    cp_lookout lookout;
+    cp_brake brake; /* but for its start */
+    double release_ttc_s;
+    fcw_car *cars; /* by vehicle number */
+    size_t numbers;
+    size_t warnings;
+    size_t heeded;
+    double braking_s;
+} fcw;
+
+static cp_status create(const cp_control_context *context, void **state, cp_error *error)
+{
+    fcw *created = calloc(1, sizeof *created);
+    if (!created)
+        return cp_fail_memory(error, "fcw");
+    const double *parameter = context->parameter;
+    double release_ttc_s = fmax(parameter[RELEASE_TTC_S], parameter[TTC_S]);
+    cp_lookout_settings settings = {
+        .sensor = {parameter[RANGE_M], cp_rad_from_deg(parameter[FIELD_OF_VIEW_DEG]),
+                   parameter[LATENCY_S]},
+        .confirmation_s = parameter[CONFIRMATION_S],
+        .detection_probability_1 = parameter[DETECTION_PROBABILITY_1],
+        .has_occlusion = parameter[OCCLUSION_1] >= 0.5,
+        .has_class = {[CP_TARGET_REAR_END] = parameter[REAR_END_1] >= 0.5,
+                      [CP_TARGET_ONCOMING] = parameter[ONCOMING_1] >= 0.5,
+                      [CP_TARGET_CROSSING] = parameter[CROSSING_1] >= 0.5,
+                      [CP_TARGET_TURNING] = parameter[TURNING_1] >= 0.5},
+        .ttc_s = parameter[TTC_S],
+        .required_m_s2 = parameter[REQUIRED_M_S2],
+        .horizon_s = fmax(release_ttc_s, parameter[TTC_S] + parameter[CONFIRMATION_S] + 0.5),
+        .key = context->seed_key,
+    };
+    created->traffic = context->traffic;
+    created->lookout = cp_lookout_create(&settings, context->traffic);
+    created->brake.jerk_m_s3 = parameter[JERK_M_S3];
+    created->brake.deceleration_m_s2 =
+        fmin(parameter[DECELERATION_M_S2], parameter[FRICTION_1] * CP_G0_M_S2);
+    created->release_ttc_s = release_ttc_s;
+    *state = created;
+    return CP_OK;
+}
+
+static void destroy(void *state)
+{
+    fcw *self = state;
+    cp_lookout_destroy(&self->lookout);
+    free(self->cars);
+    free(self);
+}
+
+static cp_status reserve(fcw *self, uint32_t vehicle, cp_error *error)
+{
+    if (vehicle < self->numbers)
+        return CP_OK;
+    size_t numbers = 2 * ((size_t)vehicle + 1);
+    fcw_car *cars = realloc(self->cars, numbers * sizeof *cars);
+    if (!cars)
+        return cp_fail_memory(error, "fcw");
+    memset(&cars[self->numbers], 0, (numbers - self->numbers) * sizeof *cars);
+    self->cars = cars;
+    self->numbers = numbers;
+    return CP_OK;
+}
+
+// Warn, and see whether and when this driver brakes.
+static void watch(fcw *self, const cp_control_context *context, const cp_vehicle_motion *motion,
+                  fcw_car *car)
+{
+    const double *parameter = context->parameter;
+    cp_threat threat;
+    if (motion->after.speed_m_s < parameter[SPEED_MIN_M_S] ||
+        !cp_lookout_threat(&self->lookout, motion, &threat))
+        return;
+    const char *id = cp_traffic_vehicle_id(self->traffic, motion->after.vehicle);
+    cp_rng_key key = cp_rng_key_text(context->seed_key, id);
+    bool heeds = cp_rng_uniform(cp_rng_key_text(key, "compliance"), 0) < parameter[COMPLIANCE_1];
+    double reaction_s = parameter[REACTION_MEDIAN_S] *
+                        exp(parameter[REACTION_SPREAD_1] *
+                            cp_rng_normal(cp_rng_key_text(key, "reaction"), car->warnings++));
+    self->warnings++;
+    self->heeded += heeds;
+    cp_brake brake = self->brake;
+    brake.start_s = heeds ? threat.instant_s + parameter[LATENCY_S] + reaction_s : INFINITY;
+    car->is_warned = true;
+    cp_braking_begin(&car->braking, &brake);
+}
+
+static cp_status step_car(fcw *self, const cp_control_context *context,
+                          const cp_vehicle_motion *motion, cp_error *error)
+{
+    fcw_car *car = &self->cars[motion->after.vehicle];
+    // Too slow to act: nothing is looked for, which spares the queues at junctions.
+    if (!car->is_warned && motion->after.speed_m_s < context->parameter[SPEED_MIN_M_S]) {
+        cp_lookout_forget(&self->lookout, motion->after.vehicle);
+        return CP_OK;
+    }
+    cp_status status = cp_lookout_track(&self->lookout, motion, error);
+    if (status != CP_OK)
+        return status;
+    if (!car->is_warned) {
+        watch(self, context, motion, car);
+    } else {
+        // The danger may also pass before the driver has reacted.
+        double now_s = cp_traffic_time_s(self->traffic);
+        bool is_calm = motion->after.speed_m_s < 0.1 ||
+                       !cp_lookout_is_danger(&self->lookout, motion, self->release_ttc_s);
+        bool has_begun = now_s >= car->braking.brake.start_s;
+        car->is_warned = has_begun ? !cp_braking_is_over(&car->braking, now_s, is_calm,
+                                                         context->parameter[HOLD_S])
+                                   : !is_calm;
+    }
+    if (!car->is_warned)
+        return CP_OK;
+    status = cp_braking_command(&car->braking, self->traffic, motion, context->actuation, error);
+    if (car->braking.is_braking)
+        self->braking_s += cp_traffic_step_length_s(self->traffic);
+    return status;
+}
+
+static cp_status step(void *state, const cp_control_context *context, cp_error *error)
+{
+    fcw *self = state;
+    if (!cp_equipment_is_any(context->equipment))
+        return CP_OK;
+    size_t count;
+    const cp_vehicle_motion *motions = cp_traffic_motions(self->traffic, &count);
+    cp_status status = cp_lookout_step(&self->lookout, error);
+    for (size_t k = 0; k < count && status == CP_OK; k++) {
+        bool has = false;
+        uint32_t vehicle = motions[k].after.vehicle;
+        status = reserve(self, vehicle, error);
+        if (status == CP_OK)
+            status = cp_equipment_has(context->equipment, self->traffic, vehicle, &has, error);
+        if (status == CP_OK && has)
+            status = step_car(self, context, &motions[k], error);
+    }
+    return status;
+}
+
+static size_t counters(const void *state, const char **names, double *values, size_t room)
+{
+    const fcw *self = state;
+    if (room < 3)
+        return 0;
+    names[0] = "warnings";
+    values[0] = (double)self->warnings;
+    names[1] = "warnings_heeded";
+    values[1] = (double)self->heeded;
+    names[2] = "braking_s";
+    values[2] = self->braking_s;
+    return 3;
+}
+
+const cp_control_type CP_CONTROL_FCW = {
+    .name = "fcw",
+    .kind = CP_CONTROL_FUNCTION,
+    .what = "forward collision warning: the driver brakes after a reaction time",
+    .parameters = PARAMETERS,
+    .parameter_count = sizeof PARAMETERS / sizeof *PARAMETERS,
+    .create = create,
+    .step = step,
+    .counters = counters,
+    .destroy = destroy,
+};

@@ -1,0 +1,282 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "control/lookout.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define TURNING_RAD_S 0.1
+#define STRAIGHTENED_LATER_S 0.5 /* a straightened way may lead there this much later */
+#define BISECTIONS 40
+
+cp_target_class cp_target_class_of(const cp_moving_rectangle *own,
+                                   const cp_moving_rectangle *target)
+{
+    double apart_rad = fabs(cp_wrap_angle(target->rectangle.yaw_rad - own->rectangle.yaw_rad));
+    if (apart_rad < M_PI / 4.0)
+        return CP_TARGET_REAR_END;
+    if (fabs(own->yaw_rate_rad_s) > TURNING_RAD_S || fabs(target->yaw_rate_rad_s) > TURNING_RAD_S)
+        return CP_TARGET_TURNING;
+    return apart_rad > 0.75 * M_PI ? CP_TARGET_ONCOMING : CP_TARGET_CROSSING;
+}
+
+cp_lookout cp_lookout_create(const cp_lookout_settings *settings, const cp_traffic *traffic)
+{
+    return (cp_lookout){.settings = *settings, .traffic = traffic};
+}
+
+void cp_lookout_destroy(cp_lookout *lookout)
+{
+    for (size_t k = 0; k < lookout->numbers; k++)
+        free(lookout->tracks[k].track);
+    free(lookout->tracks);
+    free(lookout->around);
+    free(lookout->screens);
+    free(lookout->outlines);
+    cp_neighbourhood_clear(&lookout->neighbourhood);
+    *lookout = (cp_lookout){0};
+}
+
+cp_status cp_lookout_step(cp_lookout *lookout, cp_error *error)
+{
+    size_t count;
+    const cp_vehicle_motion *motions = cp_traffic_motions(lookout->traffic, &count);
+    // Fronts lie at most one sensor range and a long vehicle apart when the target is in view.
+    double cell_m = lookout->settings.sensor.range_m + 20.0;
+    if (count > lookout->around_room) {
+        size_t room = 2 * count;
+        cp_rectangle *outlines = realloc(lookout->outlines, room * sizeof *outlines);
+        if (outlines)
+            lookout->outlines = outlines;
+        const cp_rectangle **screens = realloc(lookout->screens, room * sizeof *screens);
+        if (screens)
+            lookout->screens = screens;
+        const cp_vehicle_motion **around = realloc(lookout->around, room * sizeof *around);
+        if (around)
+            lookout->around = around;
+        if (!outlines || !screens || !around)
+            return cp_fail_memory(error, "lookout");
+        lookout->around_room = room;
+    }
+    for (size_t k = 0; k < count; k++)
+        lookout->outlines[k] = cp_moving_rectangle_of(&motions[k]).rectangle;
+    return cp_neighbourhood_fill(&lookout->neighbourhood, cell_m, motions, count, error);
+}
+
+// ---- tracking ------------------------------------------------------------------------------
+
+static cp_status reserve_tracks(cp_lookout *lookout, uint32_t vehicle, cp_error *error)
+{
+    if (vehicle < lookout->numbers)
+        return CP_OK;
+    size_t numbers = 2 * ((size_t)vehicle + 1);
+    cp_tracks *tracks = realloc(lookout->tracks, numbers * sizeof *tracks);
+    if (!tracks)
+        return cp_fail_memory(error, "lookout");
+    memset(&tracks[lookout->numbers], 0, (numbers - lookout->numbers) * sizeof *tracks);
+    lookout->tracks = tracks;
+    lookout->numbers = numbers;
+    return CP_OK;
+}
+
+static void gather(void *context, const cp_vehicle_motion *motion)
+{
+    cp_lookout *lookout = context;
+    size_t row = (size_t)(motion - lookout->neighbourhood.motions);
+    lookout->around[lookout->around_count] = motion;
+    lookout->screens[lookout->around_count++] = &lookout->outlines[row];
+}
+
+// Whether the two can meet within the horizon at all, at the speeds they have.
+static bool is_within_reach(const cp_lookout *lookout, const cp_vehicle_motion *own,
+                            const cp_vehicle_motion *other)
+{
+    double reach_m = lookout->settings.horizon_s * (own->after.speed_m_s + other->after.speed_m_s) +
+                     own->after.length_m + other->after.length_m;
+    return hypot(other->after.front_x_m - own->after.front_x_m,
+                 other->after.front_y_m - own->after.front_y_m) <= reach_m;
+}
+
+static bool is_detectable(const cp_lookout *lookout, uint32_t own, uint32_t target)
+{
+    double probability_1 = lookout->settings.detection_probability_1;
+    if (probability_1 >= 1.0)
+        return true;
+    cp_rng_key key = cp_rng_key_text(lookout->settings.key, "detection");
+    key = cp_rng_key_text(key, cp_traffic_vehicle_id(lookout->traffic, own));
+    key = cp_rng_key_text(key, cp_traffic_vehicle_id(lookout->traffic, target));
+    return cp_rng_uniform(key, 0) < probability_1;
+}
+
+static cp_status note_seen(cp_lookout *lookout, cp_tracks *tracks, uint32_t own, uint32_t target,
+                           cp_error *error)
+{
+    for (size_t k = 0; k < tracks->count; k++) {
+        if (tracks->track[k].vehicle == target) {
+            tracks->track[k].is_seen = true;
+            return CP_OK;
+        }
+    }
+    if (tracks->count == tracks->room) {
+        size_t room = tracks->room ? 2 * tracks->room : 8;
+        cp_track *larger = realloc(tracks->track, room * sizeof *larger);
+        if (!larger)
+            return cp_fail_memory(error, "lookout");
+        tracks->track = larger;
+        tracks->room = room;
+    }
+    tracks->track[tracks->count++] =
+        (cp_track){.vehicle = target,
+                   .is_seen = true,
+                   .is_detectable = is_detectable(lookout, own, target),
+                   .seen_since_s = cp_traffic_time_s(lookout->traffic)};
+    return CP_OK;
+}
+
+cp_status cp_lookout_track(cp_lookout *lookout, const cp_vehicle_motion *own, cp_error *error)
+{
+    uint32_t vehicle = own->after.vehicle;
+    cp_status status = reserve_tracks(lookout, vehicle, error);
+    if (status != CP_OK)
+        return status;
+    cp_tracks *tracks = &lookout->tracks[vehicle];
+    for (size_t k = 0; k < tracks->count; k++)
+        tracks->track[k].is_seen = false;
+
+    // Who is near, and of those who matter, who is in view.
+    lookout->around_count = 0;
+    cp_neighbourhood_visit(&lookout->neighbourhood, own->after.front_x_m, own->after.front_y_m,
+                           gather, lookout);
+    const cp_rectangle *outline = &lookout->outlines[own - lookout->neighbourhood.motions];
+    size_t screens = lookout->settings.has_occlusion ? lookout->around_count : 0;
+    for (size_t k = 0; k < lookout->around_count && status == CP_OK; k++) {
+        const cp_vehicle_motion *target = lookout->around[k];
+        if (target != own && is_within_reach(lookout, own, target) &&
+            cp_sensor_sees(&lookout->settings.sensor, outline, lookout->screens[k],
+                           lookout->screens, screens))
+            status = note_seen(lookout, tracks, vehicle, target->after.vehicle, error);
+    }
+
+    // Whoever is out of view is forgotten.
+    size_t kept = 0;
+    for (size_t k = 0; k < tracks->count; k++)
+        if (tracks->track[k].is_seen)
+            tracks->track[kept++] = tracks->track[k];
+    tracks->count = kept;
+    return status;
+}
+
+void cp_lookout_forget(cp_lookout *lookout, uint32_t vehicle)
+{
+    if (vehicle < lookout->numbers)
+        lookout->tracks[vehicle].count = 0;
+}
+
+// ---- threats -------------------------------------------------------------------------------
+
+static cp_moving_rectangle straightened(cp_moving_rectangle moving)
+{
+    moving.yaw_rate_rad_s = 0.0;
+    return moving;
+}
+
+// Conditions 1 to 4 for two vehicles at one moment; *ttc_s is set when they hold.
+static bool is_threat(const cp_lookout_settings *settings, const cp_moving_rectangle *own,
+                      const cp_moving_rectangle *target, double *ttc_s)
+{
+    cp_target_class class = cp_target_class_of(own, target);
+    if (!settings->has_class[class])
+        return false;
+    *ttc_s = cp_ttc_s(own, target, settings->ttc_s);
+    if (!(*ttc_s < settings->ttc_s))
+        return false;
+
+    cp_vec2 axis = cp_vec2_heading(own->rectangle.yaw_rad);
+    double speed_m_s = cp_vec2_dot(own->velocity_m_s, axis);
+    if (class == CP_TARGET_REAR_END)
+        speed_m_s -= cp_vec2_dot(target->velocity_m_s, axis);
+    if (speed_m_s < 2.0 * *ttc_s * settings->required_m_s2)
+        return false;
+
+    if (class != CP_TARGET_TURNING)
+        return true;
+    double later_s = settings->ttc_s + STRAIGHTENED_LATER_S;
+    cp_moving_rectangle own_straight = straightened(*own);
+    cp_moving_rectangle target_straight = straightened(*target);
+    return cp_ttc_s(&own_straight, target, later_s) < INFINITY &&
+           cp_ttc_s(own, &target_straight, later_s) < INFINITY;
+}
+
+static bool is_threat_inside(const cp_lookout_settings *settings, const cp_vehicle_motion *own,
+                             const cp_vehicle_motion *target, double fraction, double *ttc_s)
+{
+    cp_moving_rectangle one = cp_moving_rectangle_inside(own, fraction);
+    cp_moving_rectangle other = cp_moving_rectangle_inside(target, fraction);
+    return is_threat(settings, &one, &other, ttc_s);
+}
+
+// Fraction of the step at which it became a threat, which it is at the end: 0 if it was already at
+// the beginning.
+static double find_instant(const cp_lookout_settings *settings, const cp_vehicle_motion *own,
+                           const cp_vehicle_motion *target)
+{
+    double ttc_s, before_1 = 0.0, after_1 = 1.0;
+    if (!own->was_present || !target->was_present)
+        return 1.0;
+    if (is_threat_inside(settings, own, target, 0.0, &ttc_s))
+        return 0.0;
+    for (int k = 0; k < BISECTIONS; k++) {
+        double middle_1 = 0.5 * (before_1 + after_1);
+        if (is_threat_inside(settings, own, target, middle_1, &ttc_s))
+            after_1 = middle_1;
+        else
+            before_1 = middle_1;
+    }
+    return after_1;
+}
+
+bool cp_lookout_threat(const cp_lookout *lookout, const cp_vehicle_motion *own, cp_threat *threat)
+{
+    const cp_lookout_settings *settings = &lookout->settings;
+    const cp_tracks *tracks = &lookout->tracks[own->after.vehicle];
+    double now_s = cp_traffic_time_s(lookout->traffic);
+    double step_s = cp_traffic_step_length_s(lookout->traffic);
+    bool found = false;
+    for (size_t k = 0; k < tracks->count; k++) {
+        const cp_track *track = &tracks->track[k];
+        const cp_vehicle_motion *target = cp_traffic_motion_of(lookout->traffic, track->vehicle);
+        double known_s = track->seen_since_s + settings->confirmation_s, ttc_s;
+        if (!target || !track->is_detectable || known_s > now_s ||
+            !is_threat_inside(settings, own, target, 1.0, &ttc_s))
+            continue;
+        double inside_s = now_s - (1.0 - find_instant(settings, own, target)) * step_s;
+        double instant_s = fmax(inside_s, known_s);
+        if (found && instant_s >= threat->instant_s)
+            continue;
+        cp_moving_rectangle one = cp_moving_rectangle_of(own);
+        cp_moving_rectangle other = cp_moving_rectangle_of(target);
+        *threat = (cp_threat){.vehicle = track->vehicle,
+                              .class = cp_target_class_of(&one, &other),
+                              .ttc_s = ttc_s,
+                              .instant_s = instant_s};
+        found = true;
+    }
+    return found;
+}
+
+bool cp_lookout_is_danger(const cp_lookout *lookout, const cp_vehicle_motion *own, double horizon_s)
+{
+    const cp_lookout_settings *settings = &lookout->settings;
+    const cp_tracks *tracks = &lookout->tracks[own->after.vehicle];
+    cp_moving_rectangle one = cp_moving_rectangle_of(own);
+    for (size_t k = 0; k < tracks->count; k++) {
+        const cp_track *track = &tracks->track[k];
+        const cp_vehicle_motion *target = cp_traffic_motion_of(lookout->traffic, track->vehicle);
+        if (!target || !track->is_detectable)
+            continue;
+        cp_moving_rectangle other = cp_moving_rectangle_of(target);
+        if (settings->has_class[cp_target_class_of(&one, &other)] &&
+            cp_ttc_s(&one, &other, horizon_s) < INFINITY)
+            return true;
+    }
+    return false;
+}

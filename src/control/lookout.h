@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CONTROL_LOOKOUT_H
+#define CONTROL_LOOKOUT_H
+
+#include "control/neighbourhood.h"
+#include "control/sensor.h"
+#include "control/ttc.h"
+#include "core/rng.h"
+
+/* What a forward-looking function knows of the traffic before its car, and which of the vehicles it
+ * has in view is a threat.
+ *
+ * A target is known when the sensor has had it in view (range, field of view, not hidden behind
+ * another vehicle) without a break for confirmation_s; some are never detected: one seeded draw for
+ * each pair of vehicles.
+ *
+ * A known target is a threat when
+ *   1. its class is switched on;
+ *   2. TTC < ttc_s (ttc.h: constant velocity and yaw rate of both);
+ *   3. the deceleration it takes is at least required_m_s2: v^2/(2 d) = v/(2 TTC) with v the own
+ *      speed, less the target's along the own axis in same-direction traffic;
+ *   4. where one of the two turns: it holds too if either of them drove straight on from now. A
+ *      driver in a junction straightens up at its end; the cars waiting beside his way are no
+ *      targets, although the circle that he is on leads through them. */
+
+typedef enum cp_target_class {
+    CP_TARGET_REAR_END, /* headings within 45 degrees */
+    CP_TARGET_ONCOMING, /* headings apart by more than 135 degrees, nobody turns */
+    CP_TARGET_CROSSING, /* in between, nobody turns */
+    CP_TARGET_TURNING,  /* not in the same direction, and one of the two turns, > 0.1 rad/s */
+    CP_TARGET_CLASSES
+} cp_target_class;
+
+cp_target_class cp_target_class_of(const cp_moving_rectangle *own,
+                                   const cp_moving_rectangle *target);
+
+typedef struct cp_lookout_settings {
+    cp_sensor sensor;
+    double confirmation_s;
+    double detection_probability_1;
+    bool has_occlusion;
+    bool has_class[CP_TARGET_CLASSES];
+    double ttc_s;
+    double required_m_s2;
+    double horizon_s; /* tracks whatever can be met within this; >= ttc_s */
+    cp_rng_key key;   /* of the draws of detection */
+} cp_lookout_settings;
+
+/* A target of one car. */
+typedef struct cp_track {
+    uint32_t vehicle;
+    bool is_seen;       /* in this step */
+    bool is_detectable; /* its draw */
+    double seen_since_s;
+} cp_track;
+
+/* The targets of one car. Zero-initialised: none. */
+typedef struct cp_tracks {
+    cp_track *track;
+    size_t count;
+    size_t room;
+} cp_tracks;
+
+/* Of all cars that have the function. */
+typedef struct cp_lookout {
+    cp_lookout_settings settings;
+    const cp_traffic *traffic;
+    cp_neighbourhood neighbourhood;
+    cp_tracks *tracks; /* by vehicle number */
+    size_t numbers;
+    cp_rectangle *outlines;           /* of all vehicles, in the order of the traffic's motions */
+    const cp_vehicle_motion **around; /* vehicles near the car in hand, and their outlines */
+    const cp_rectangle **screens;
+    size_t around_count;
+    size_t around_room; /* of all three */
+} cp_lookout;
+
+/* The most urgent threat. */
+typedef struct cp_threat {
+    uint32_t vehicle;
+    cp_target_class class;
+    double ttc_s;     /* at the end of the step */
+    double instant_s; /* SUMO clock inside the step at which it became a threat */
+} cp_threat;
+
+cp_lookout cp_lookout_create(const cp_lookout_settings *settings, const cp_traffic *traffic);
+void cp_lookout_destroy(cp_lookout *lookout);
+
+/* In every step: once for the traffic, then for cars that have the function, with their motion as
+ * the traffic holds it. A car left out in a step keeps the tracks it has; forget drops them. */
+CP_MUST_CHECK cp_status cp_lookout_step(cp_lookout *lookout, cp_error *error);
+CP_MUST_CHECK cp_status cp_lookout_track(cp_lookout *lookout, const cp_vehicle_motion *own,
+                                         cp_error *error);
+
+void cp_lookout_forget(cp_lookout *lookout, uint32_t vehicle);
+
+/* The threat that came first in this step, false when there is none. Needs cp_lookout_track. */
+bool cp_lookout_threat(const cp_lookout *lookout, const cp_vehicle_motion *own, cp_threat *threat);
+/* Whether a known target of a class switched on is met within horizon_s. */
+bool cp_lookout_is_danger(const cp_lookout *lookout, const cp_vehicle_motion *own,
+                          double horizon_s);
+
+#endif

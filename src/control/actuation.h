@@ -4,10 +4,11 @@
 
 #include "traffic/traffic.h"
 
-/* Who brakes what: functions ask for the speed a vehicle shall have at the end of the coming step,
- * the lowest request goes to SUMO. The first request takes the vehicle over from SUMO's driver
- * (speed mode 27: all its checks but the maximum deceleration of the vehicle type, so that it may
- * brake harder still but not less), the first step without one hands it back as it was. */
+/* Who brakes what: functions, and drivers whose braking SUMO does not do, ask for the speed a
+ * vehicle shall have at the end of the coming step, the lowest request goes to SUMO. The first
+ * request takes the vehicle over from SUMO's driver (speed mode 27: all its checks but the maximum
+ * deceleration of the vehicle type, so that it may brake harder still but not less), the first step
+ * without one hands it back as it was. */
 typedef struct cp_actuation_car {
     double request_m_s;       /* lowest of this step; valid if is_requested */
     double deceleration_m_s2; /* largest of this step */
@@ -26,7 +27,8 @@ typedef struct cp_actuation {
 } cp_actuation;
 
 /* Ask for a speed (>= 0) of a vehicle on the road at the end of the coming step; deceleration_m_s2
- * is what is told to who asks for the brake request. Error: CP_NO_MEMORY. */
+ * is what is told to who asks for the functions' brake request (drivers give 0). Error:
+ * CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_actuation_request(cp_actuation *actuation, uint32_t vehicle,
                                              double speed_m_s, double deceleration_m_s2,
                                              cp_error *error);

@@ -34,7 +34,7 @@ cp_status cp_braking_command(cp_braking *braking, const cp_traffic *traffic,
     double end_s = cp_traffic_time_s(traffic) + cp_traffic_step_length_s(traffic);
     double loss_m_s = cp_brake_speed_loss_m_s(&braking->brake, end_s) -
                       cp_brake_speed_loss_m_s(&braking->brake, braking->commanded_until_s);
-    if (loss_m_s <= 0.0)
+    if (!(loss_m_s > 0.0))
         return CP_OK;
     braking->is_braking = true;
     braking->commanded_until_s = end_s;

@@ -8,16 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const cp_control_type *const CP_CONTROL_TYPE[] = {
-    &CP_CONTROL_FAILED_TO_SEE,
-    &CP_CONTROL_RISKY_OVERTAKING,
-    &CP_CONTROL_LANE_DRIFT,
-    &CP_CONTROL_AEB,
-    &CP_CONTROL_FCW,
-    &CP_CONTROL_ISA,
-};
-const size_t CP_CONTROL_TYPE_COUNT = sizeof CP_CONTROL_TYPE / sizeof *CP_CONTROL_TYPE;
-
 typedef struct active_control {
     cp_control_settings settings;
     cp_control_context context;
@@ -25,8 +15,11 @@ typedef struct active_control {
     void *state;
 } active_control;
 
+/* At once, of one replication or branch. Their contexts are pointed at and must stay in place. */
+#define CP_CONTROLS_MAX 64
+
 struct cp_controls {
-    active_control *active;
+    active_control active[CP_CONTROLS_MAX];
     size_t count; /* created so far */
     const cp_traffic *traffic;
     cp_actuation actuation;
@@ -76,7 +69,7 @@ static cp_status create_one(cp_controls *controls, active_control *active,
         .penetration_1 = is_function ? settings->parameter[0] : 0.0,
         .shares = settings->shares,
         .share_count = settings->share_count,
-        .only = controls->only[0] ? (const char *const *)controls->only : NULL,
+        .only = is_function && controls->only[0] ? (const char *const *)controls->only : NULL,
         .only_count = 2,
     };
     active->context = (cp_control_context){
@@ -92,11 +85,13 @@ static cp_status create_one(cp_controls *controls, active_control *active,
 static cp_status create_all(const cp_control_settings *settings, size_t count, uint64_t study_seed,
                             uint64_t replication_seed, cp_controls *controls, cp_error *error)
 {
-    if (count > 0 && !(controls->active = calloc(count, sizeof *controls->active)))
-        return cp_fail_memory(error, "controls");
+    if (controls->count + count > CP_CONTROLS_MAX)
+        return cp_fail(error, CP_BAD_INPUT, "more than %d driver errors and functions at once",
+                       CP_CONTROLS_MAX);
     cp_rng_key key = cp_rng_key_number(cp_rng_key_seed(study_seed), replication_seed);
     for (size_t k = 0; k < count; k++) {
-        cp_status status = create_one(controls, &controls->active[k], &settings[k], key, error);
+        active_control *active = &controls->active[controls->count];
+        cp_status status = create_one(controls, active, &settings[k], key, error);
         if (status != CP_OK)
             return status;
         controls->count++;
@@ -104,22 +99,16 @@ static cp_status create_all(const cp_control_settings *settings, size_t count, u
     return CP_OK;
 }
 
-cp_status cp_controls_create_for_pair(const cp_control_settings *settings, size_t count,
-                                      uint64_t study_seed, uint64_t replication_seed,
-                                      const cp_traffic *traffic, const char *const ids[2],
-                                      cp_controls **controls, cp_error *error)
+cp_status cp_controls_create(const cp_control_settings *settings, size_t count, uint64_t study_seed,
+                             uint64_t replication_seed, const cp_traffic *traffic,
+                             cp_controls **controls, cp_error *error)
 {
     *controls = NULL;
     cp_controls *created = calloc(1, sizeof *created);
     if (!created)
         return cp_fail_memory(error, "controls");
     created->traffic = traffic;
-    cp_status status = CP_OK;
-    for (int k = 0; ids && k < 2 && status == CP_OK; k++)
-        if (!(created->only[k] = strdup(ids[k])))
-            status = cp_fail_memory(error, "controls");
-    if (status == CP_OK)
-        status = create_all(settings, count, study_seed, replication_seed, created, error);
+    cp_status status = create_all(settings, count, study_seed, replication_seed, created, error);
     if (status != CP_OK) {
         cp_controls_destroy(created);
         return status;
@@ -128,12 +117,16 @@ cp_status cp_controls_create_for_pair(const cp_control_settings *settings, size_
     return CP_OK;
 }
 
-cp_status cp_controls_create(const cp_control_settings *settings, size_t count, uint64_t study_seed,
-                             uint64_t replication_seed, const cp_traffic *traffic,
-                             cp_controls **controls, cp_error *error)
+cp_status cp_controls_add_treatment(cp_controls *controls, const cp_control_settings *settings,
+                                    size_t count, uint64_t study_seed, uint64_t replication_seed,
+                                    const char *const ids[2], cp_error *error)
 {
-    return cp_controls_create_for_pair(settings, count, study_seed, replication_seed, traffic, NULL,
-                                       controls, error);
+    for (int k = 0; k < 2; k++) {
+        free(controls->only[k]);
+        if (!(controls->only[k] = strdup(ids[k])))
+            return cp_fail_memory(error, "controls");
+    }
+    return create_all(settings, count, study_seed, replication_seed, controls, error);
 }
 
 void cp_controls_destroy(cp_controls *controls)
@@ -147,7 +140,6 @@ void cp_controls_destroy(cp_controls *controls)
     cp_actuation_destroy(&controls->actuation);
     free(controls->only[0]);
     free(controls->only[1]);
-    free(controls->active);
     free(controls);
 }
 

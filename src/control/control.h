@@ -91,14 +91,12 @@ CP_MUST_CHECK cp_status cp_controls_create(const cp_control_settings *settings, 
                                            uint64_t study_seed, uint64_t replication_seed,
                                            const cp_traffic *traffic, cp_controls **controls,
                                            cp_error *error);
-/* The same for functions on two vehicles only, named by their SUMO ids (copied): a treatment. Who
- * of them has a function is still drawn. */
-CP_MUST_CHECK cp_status cp_controls_create_for_pair(const cp_control_settings *settings,
-                                                    size_t count, uint64_t study_seed,
-                                                    uint64_t replication_seed,
-                                                    const cp_traffic *traffic,
-                                                    const char *const ids[2],
-                                                    cp_controls **controls, cp_error *error);
+/* Add functions on two vehicles only, named by their SUMO ids (copied), to controls at work: a
+ * treatment. Who of the two has a function is still drawn. seeds: as above. */
+CP_MUST_CHECK cp_status cp_controls_add_treatment(cp_controls *controls,
+                                                  const cp_control_settings *settings, size_t count,
+                                                  uint64_t study_seed, uint64_t replication_seed,
+                                                  const char *const ids[2], cp_error *error);
 void cp_controls_destroy(cp_controls *controls);
 CP_MUST_CHECK cp_status cp_controls_step(cp_controls *controls, cp_error *error);
 /* Signature fits cp_detector_step: context is the cp_controls. */

@@ -4,20 +4,26 @@
 
 #include "control/control.h"
 
-/* The rows of CP_CONTROL_TYPE, each defined in the file of its name (driver errors in
- * driver_error/). */
+/* The table of all controls, each defined in a file of this folder (driver errors in
+ * driver_error/). X(symbol). */
+#define CP_CONTROL_ROWS(X)                                                                         \
+    /* looked but failed to see: a driver overlooks certain others at junctions */                 \
+    X(CP_CONTROL_FAILED_TO_SEE)                                                                    \
+    /* a share of drivers overtakes with too little room */                                        \
+    X(CP_CONTROL_RISKY_OVERTAKING)                                                                 \
+    /* inattention: the car drifts off its lane */                                                 \
+    X(CP_CONTROL_LANE_DRIFT)                                                                       \
+    /* automatic emergency braking */                                                              \
+    X(CP_CONTROL_AEB)                                                                              \
+    /* forward collision warning: the driver brakes after a reaction time */                       \
+    X(CP_CONTROL_FCW)                                                                              \
+    /* emergency lane keeping against drifting into oncoming traffic */                            \
+    X(CP_CONTROL_ELK)                                                                              \
+    /* intelligent speed assistance: limits the speed */                                           \
+    X(CP_CONTROL_ISA)
 
-/* Looked but failed to see: a driver overlooks certain others at junctions. */
-extern const cp_control_type CP_CONTROL_FAILED_TO_SEE;
-/* A share of drivers overtakes with too little room. */
-extern const cp_control_type CP_CONTROL_RISKY_OVERTAKING;
-/* Inattention: the car drifts off its lane. */
-extern const cp_control_type CP_CONTROL_LANE_DRIFT;
-/* Automatic emergency braking. */
-extern const cp_control_type CP_CONTROL_AEB;
-/* Forward collision warning: the driver brakes after a reaction time. */
-extern const cp_control_type CP_CONTROL_FCW;
-/* Intelligent speed assistance: limits the speed. */
-extern const cp_control_type CP_CONTROL_ISA;
+#define CP_CONTROL_DECLARE(symbol) extern const cp_control_type symbol;
+CP_CONTROL_ROWS(CP_CONTROL_DECLARE)
+#undef CP_CONTROL_DECLARE
 
 #endif

@@ -173,9 +173,12 @@ static void watch(fcw *self, const cp_control_context *context, const cp_vehicle
                             cp_rng_normal(cp_rng_key_text(key, "reaction"), car->warnings++));
     self->warnings++;
     self->heeded += heeds;
-    cp_brake brake = self->brake;
-    brake.start_s = heeds ? threat.instant_s + parameter[LATENCY_S] + reaction_s : INFINITY;
     car->is_warned = true;
+    car->braking = (cp_braking){0};
+    if (!heeds)
+        return;
+    cp_brake brake = self->brake;
+    brake.start_s = threat.instant_s + parameter[LATENCY_S] + reaction_s;
     cp_braking_begin(&car->braking, &brake);
 }
 
@@ -198,12 +201,12 @@ static cp_status step_car(fcw *self, const cp_control_context *context,
         double now_s = cp_traffic_time_s(self->traffic);
         bool is_calm = motion->after.speed_m_s < 0.1 ||
                        !cp_lookout_is_danger(&self->lookout, motion, self->release_ttc_s);
-        bool has_begun = now_s >= car->braking.brake.start_s;
+        bool has_begun = car->braking.is_requesting && now_s >= car->braking.brake.start_s;
         car->is_warned = has_begun ? !cp_braking_is_over(&car->braking, now_s, is_calm,
                                                          context->parameter[HOLD_S])
                                    : !is_calm;
     }
-    if (!car->is_warned)
+    if (!car->is_warned || !car->braking.is_requesting)
         return CP_OK;
     status = cp_braking_command(&car->braking, self->traffic, motion, context->actuation, error);
     if (car->braking.is_braking)

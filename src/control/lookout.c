@@ -171,6 +171,12 @@ void cp_lookout_forget(cp_lookout *lookout, uint32_t vehicle)
         lookout->tracks[vehicle].count = 0;
 }
 
+bool cp_lookout_is_known(const cp_lookout *lookout, const cp_track *track)
+{
+    return track->is_detectable && track->seen_since_s + lookout->settings.confirmation_s <=
+                                       cp_traffic_time_s(lookout->traffic);
+}
+
 // ---- threats -------------------------------------------------------------------------------
 
 static cp_moving_rectangle straightened(cp_moving_rectangle moving)
@@ -245,7 +251,7 @@ bool cp_lookout_threat(const cp_lookout *lookout, const cp_vehicle_motion *own, 
         const cp_track *track = &tracks->track[k];
         const cp_vehicle_motion *target = cp_traffic_motion_of(lookout->traffic, track->vehicle);
         double known_s = track->seen_since_s + settings->confirmation_s, ttc_s;
-        if (!target || !track->is_detectable || known_s > now_s ||
+        if (!target || !cp_lookout_is_known(lookout, track) ||
             !is_threat_inside(settings, own, target, 1.0, &ttc_s))
             continue;
         double inside_s = now_s - (1.0 - find_instant(settings, own, target)) * step_s;

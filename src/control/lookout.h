@@ -94,6 +94,9 @@ CP_MUST_CHECK cp_status cp_lookout_track(cp_lookout *lookout, const cp_vehicle_m
 
 void cp_lookout_forget(cp_lookout *lookout, uint32_t vehicle);
 
+/* Whether a target is detectable and has been in view long enough. */
+bool cp_lookout_is_known(const cp_lookout *lookout, const cp_track *track);
+
 /* The threat that came first in this step, false when there is none. Needs cp_lookout_track. */
 bool cp_lookout_threat(const cp_lookout *lookout, const cp_vehicle_motion *own, cp_threat *threat);
 /* Whether a known target of a class switched on is met within horizon_s. */

@@ -191,7 +191,6 @@ static void sample(branch_run *run)
         if (motions[role] == NULL || run->sample_count == self->sample_room)
             continue;
         const cp_vehicle_state *state = &motions[role]->after;
-        const cp_controls *treatment = self->simulation->treatment;
         self->samples[run->sample_count++] = (cp_sample_row){
             .role = role,
             .time_s = cp_traffic_time_s(traffic),
@@ -201,7 +200,7 @@ static void sample(branch_run *run)
             .acceleration_m_s2 = state->acceleration_m_s2,
             .ttc_s = isfinite(ttc_s) ? ttc_s : NAN,
             .brake_request_m_s2 =
-                treatment != NULL ? cp_controls_brake_request_m_s2(treatment, state->vehicle) : 0.0,
+                cp_controls_brake_request_m_s2(self->simulation->controls, state->vehicle),
         };
     }
 }
@@ -267,9 +266,9 @@ static int run_branch(void *context, size_t number, const void *request, size_t 
     if (number > 0) {
         const cp_study_variant *variant = treatment_of(self, number - 1);
         const char *ids[2] = {run.request->ids[0], run.request->ids[1]};
-        if (cp_controls_create_for_pair(variant->functions, variant->function_count,
-                                        self->study->seed, self->seed, simulation->traffic, ids,
-                                        &simulation->treatment, &error) != CP_OK)
+        if (cp_controls_add_treatment(simulation->controls, variant->functions,
+                                      variant->function_count, self->study->seed, self->seed, ids,
+                                      &error) != CP_OK)
             return 1;
     }
     if (run_steps(&run, number == 0, &error) != CP_OK)

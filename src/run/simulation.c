@@ -58,7 +58,6 @@ void cp_simulation_end(cp_simulation *simulation)
 {
     cp_cross_check_destroy(&simulation->check);
     cp_detector_destroy(simulation->detector);
-    cp_controls_destroy(simulation->treatment);
     cp_controls_destroy(simulation->controls);
     cp_traffic_destroy(simulation->traffic);
     free(simulation->found);
@@ -163,8 +162,6 @@ cp_status cp_simulation_step(cp_simulation *simulation, cp_error *error)
     cp_status status = cp_traffic_step(simulation->traffic, error);
     if (status == CP_OK)
         status = cp_controls_step(simulation->controls, error);
-    if (status == CP_OK && simulation->treatment != NULL)
-        status = cp_controls_step(simulation->treatment, error);
     if (status == CP_OK)
         status = take_impacts(simulation, error);
     if (status == CP_OK)

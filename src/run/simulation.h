@@ -24,8 +24,7 @@ typedef struct cp_found_contact {
 /* Zero-initialise, begin, step, end. */
 typedef struct cp_simulation {
     cp_traffic *traffic;
-    cp_controls *controls;  /* drivers and functions of the variant */
-    cp_controls *treatment; /* in a branch: functions of the two vehicles; else NULL */
+    cp_controls *controls; /* drivers and functions of the variant; in a branch the treatment too */
     cp_detector *detector;
     cp_cross_check check;
     double counted_from_s;   /* SUMO clock: end of the warm-up */

@@ -642,6 +642,20 @@ cp_status sumo_bridge_speed_mode(uint32_t vehicle, int *mode, cp_error *error)
     });
 }
 
+cp_status sumo_bridge_lane_width(uint32_t lane, double *width_m, cp_error *error)
+{
+    *width_m = 0.0;
+    cp_status status = need_running(error);
+    if (status != CP_OK)
+        return status;
+    const std::string *id = bridge->lanes.name(lane);
+    if (!id)
+        return cp_fail(error, CP_TRAFFIC_FAILED, "lane width: there is no lane number %u",
+                       static_cast<unsigned>(lane));
+    return guarded("lane width", CP_TRAFFIC_FAILED, error,
+                   [&] { *width_m = libsumo::Lane::getWidth(*id); });
+}
+
 cp_status sumo_bridge_set_speed_factor(uint32_t vehicle, double factor_1, cp_error *error)
 {
     return command_vehicle("set speed factor", vehicle, error, [=](const std::string &id) {

@@ -98,6 +98,9 @@ CP_MUST_CHECK cp_status sumo_bridge_road_relation(const cp_vehicle_state *one,
                                                   const cp_vehicle_state *other,
                                                   cp_road_relation *relation, cp_error *error);
 
+/* Width of a lane, m. */
+CP_MUST_CHECK cp_status sumo_bridge_lane_width(uint32_t lane, double *width_m, cp_error *error);
+
 /* Names; "" for a number never given out. */
 const char *sumo_bridge_vehicle_id(uint32_t vehicle);
 const char *sumo_bridge_type_id(uint32_t type);

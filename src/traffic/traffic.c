@@ -228,6 +228,14 @@ const char *cp_traffic_vehicle_type(const cp_traffic *traffic, uint32_t vehicle)
     return motion && traffic->source->type_id ? traffic->source->type_id(motion->after.type) : "";
 }
 
+cp_status cp_traffic_lane_width(const cp_traffic *traffic, const cp_vehicle_state *state,
+                                double *width_m, cp_error *error)
+{
+    *width_m = 3.2;
+    return traffic->source->lane_width ? traffic->source->lane_width(state->lane, width_m, error)
+                                       : CP_OK;
+}
+
 const cp_traffic_source *cp_traffic_commands(const cp_traffic *traffic)
 {
     return traffic->source;

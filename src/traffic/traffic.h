@@ -35,6 +35,8 @@ typedef struct cp_traffic_source {
     cp_status (*speed_factor)(uint32_t vehicle, double *factor_1, cp_error *error);
     cp_status (*set_parameter)(uint32_t vehicle, const char *key, const char *value,
                                cp_error *error);
+    /* May be NULL: all lanes are SUMO's default, 3.2 m wide. */
+    cp_status (*lane_width)(uint32_t lane, double *width_m, cp_error *error);
     /* May be NULL: all roads meet. */
     cp_status (*road_relation)(const cp_vehicle_state *one, const cp_vehicle_state *other,
                                cp_road_relation *relation, cp_error *error);
@@ -83,6 +85,10 @@ CP_MUST_CHECK cp_status cp_traffic_road_relation(const cp_traffic *traffic,
 const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle);
 /* SUMO vehicle type of a vehicle on the road; "" of any other. */
 const char *cp_traffic_vehicle_type(const cp_traffic *traffic, uint32_t vehicle);
+/* Width of the lane that a vehicle is on, m. */
+CP_MUST_CHECK cp_status cp_traffic_lane_width(const cp_traffic *traffic,
+                                              const cp_vehicle_state *state, double *width_m,
+                                              cp_error *error);
 /* Where to send commands for the coming step. */
 const cp_traffic_source *cp_traffic_commands(const cp_traffic *traffic);
 /* Where the cars are that drift off SUMO's path; commands for the coming step like the others. */

@@ -15,6 +15,7 @@ static const cp_traffic_source SUMO = {
     .set_speed_factor = sumo_bridge_set_speed_factor,
     .speed_factor = sumo_bridge_speed_factor,
     .set_parameter = sumo_bridge_set_parameter,
+    .lane_width = sumo_bridge_lane_width,
     .road_relation = sumo_bridge_road_relation,
     .stop = sumo_bridge_stop,
 };

@@ -9,8 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A road without SUMO for tests of controls: cars keep speed and heading but for commanded speeds,
- * which hold for the coming steps until taken back (ballistic update, as in our runs of SUMO). */
+/* A road without SUMO for tests of controls: cars keep speed and curvature of their way but for
+ * commanded speeds, which hold for the coming steps until taken back (ballistic update, as in our
+ * runs of SUMO). */
 
 #define ROAD_CARS 8
 
@@ -18,7 +19,8 @@ typedef struct road_car {
     char id[16];
     cp_vehicle_state state;
     bool is_there;
-    double command_m_s; /* < 0: none */
+    double curvature_1_m; /* of the way of its centre, left positive */
+    double command_m_s;   /* < 0: none */
     int mode;
     char key[64], value[256]; /* of the last parameter set */
 } road_car;
@@ -33,6 +35,20 @@ static struct road {
     int commands;
 } road;
 
+/* Along the arc: the centre by its chord, the front with the heading. */
+static inline void road_drive(road_car *car, double way_m)
+{
+    double half_turn_rad = 0.5 * car->curvature_1_m * way_m;
+    double shortening = half_turn_rad == 0.0 ? 1.0 : sin(half_turn_rad) / half_turn_rad;
+    double half_m = 0.5 * car->state.length_m, yaw_rad = car->state.yaw_rad;
+    double later_rad = cp_wrap_angle(yaw_rad + 2.0 * half_turn_rad);
+    car->state.front_x_m += way_m * shortening * cos(yaw_rad + half_turn_rad) +
+                            half_m * (cos(later_rad) - cos(yaw_rad));
+    car->state.front_y_m += way_m * shortening * sin(yaw_rad + half_turn_rad) +
+                            half_m * (sin(later_rad) - sin(yaw_rad));
+    car->state.yaw_rad = later_rad;
+}
+
 static cp_status road_step(const cp_vehicle_state **states, size_t *count, cp_error *error)
 {
     (void)error;
@@ -44,10 +60,8 @@ static cp_status road_step(const cp_vehicle_state **states, size_t *count, cp_er
         if (car->command_m_s >= 0.0)
             car->state.speed_m_s = car->command_m_s;
         double way_m = 0.5 * (before_m_s + car->state.speed_m_s) * road.step_s;
-        if (k < road.announced) { // who has just come stands where it was put
-            car->state.front_x_m += way_m * cos(car->state.yaw_rad);
-            car->state.front_y_m += way_m * sin(car->state.yaw_rad);
-        }
+        if (k < road.announced) // who has just come stands where it was put
+            road_drive(car, way_m);
         if (car->is_there)
             road.states[(*count)++] = car->state;
     }
@@ -74,6 +88,12 @@ static double road_time_s(void)
 static const char *road_vehicle_id(uint32_t vehicle)
 {
     return road.cars[vehicle].id;
+}
+
+static const char *road_type_id(uint32_t type)
+{
+    static const char *const TYPES[] = {"type0", "type1"};
+    return TYPES[type % 2];
 }
 
 static cp_status road_set_speed(uint32_t vehicle, double speed_m_s, cp_error *error)
@@ -118,6 +138,7 @@ static const cp_traffic_source ROAD = {
     .departed = road_departed,
     .time_s = road_time_s,
     .vehicle_id = road_vehicle_id,
+    .type_id = road_type_id,
     .set_speed = road_set_speed,
     .set_speed_mode = road_set_speed_mode,
     .speed_mode = road_speed_mode,

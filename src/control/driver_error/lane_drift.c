@@ -297,7 +297,7 @@ static cp_status react(lane_drift *self, const cp_control_context *context, cp_e
                 self->drivers[k].vehicle, context->seed_key, error);
     if (status == CP_OK)
         status = cp_oncoming_reaction_step(&self->reaction, &self->reaction_settings, self->traffic,
-                                           error);
+                                           context->actuation, error);
     return status;
 }
 

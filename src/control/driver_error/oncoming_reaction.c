@@ -17,7 +17,6 @@ typedef struct cp_reacting_driver {
     double brake_start_s;     /* clock */
     double commanded_until_s; /* speed loss up to here has been commanded */
     double danger_seen_s;     /* last time there was a collision course */
-    bool is_braking;
 } cp_reacting_driver;
 
 void cp_oncoming_reaction_destroy(cp_oncoming_reaction *reaction)
@@ -129,32 +128,26 @@ cp_status cp_oncoming_reaction_notice(cp_oncoming_reaction *reaction,
     return looking.status;
 }
 
-// Take away what the profile asks for until the end of the coming step. SUMO's mode 27 keeps all
-// its driver's checks but the comfortable deceleration; it matters only while a speed is commanded.
+// Take away what the profile asks for until the end of the coming step.
 static cp_status brake(cp_reacting_driver *driver, const cp_oncoming_reaction_settings *settings,
-                       const cp_traffic *traffic, const cp_vehicle_motion *motion, cp_error *error)
+                       const cp_traffic *traffic, const cp_vehicle_motion *motion,
+                       cp_actuation *actuation, cp_error *error)
 {
-    const cp_traffic_source *commands = cp_traffic_commands(traffic);
     double end_s = cp_traffic_time_s(traffic) + cp_traffic_step_length_s(traffic);
     cp_brake profile = {driver->brake_start_s, settings->jerk_m_s3, settings->deceleration_m_s2};
     double loss_m_s = cp_brake_speed_loss_m_s(&profile, end_s) -
                       cp_brake_speed_loss_m_s(&profile, driver->commanded_until_s);
     if (loss_m_s <= 0.0)
         return CP_OK;
-    cp_status status = CP_OK;
-    if (!driver->is_braking)
-        status = commands->set_speed_mode(driver->vehicle, 27, error);
-    driver->is_braking = true;
     driver->commanded_until_s = end_s;
-    if (status != CP_OK)
-        return status;
-    return commands->set_speed(driver->vehicle, fmax(motion->after.speed_m_s - loss_m_s, 0.0),
-                               error);
+    return cp_actuation_request(actuation, driver->vehicle,
+                                fmax(motion->after.speed_m_s - loss_m_s, 0.0), 0.0, error);
 }
 
 cp_status cp_oncoming_reaction_step(cp_oncoming_reaction *reaction,
                                     const cp_oncoming_reaction_settings *settings,
-                                    const cp_traffic *traffic, cp_error *error)
+                                    const cp_traffic *traffic, cp_actuation *actuation,
+                                    cp_error *error)
 {
     double now_s = cp_traffic_time_s(traffic);
     cp_status status = CP_OK;
@@ -165,12 +158,10 @@ cp_status cp_oncoming_reaction_step(cp_oncoming_reaction *reaction,
         if (motion == NULL)
             continue; // gone
         bool is_over = now_s - driver.danger_seen_s > CALM_S && now_s >= driver.brake_start_s;
-        if (is_over && driver.is_braking && status == CP_OK)
-            status = cp_traffic_commands(traffic)->set_speed(driver.vehicle, -1.0, error);
         if (is_over)
             continue;
         if (status == CP_OK)
-            status = brake(&driver, settings, traffic, motion, error);
+            status = brake(&driver, settings, traffic, motion, actuation, error);
         reaction->drivers[kept++] = driver;
     }
     reaction->count = kept;

@@ -2,6 +2,7 @@
 #ifndef CONTROL_DRIVER_ERROR_ONCOMING_REACTION_H
 #define CONTROL_DRIVER_ERROR_ONCOMING_REACTION_H
 
+#include "control/actuation.h"
 #include "control/neighbourhood.h"
 #include "core/rng.h"
 #include "traffic/traffic.h"
@@ -37,9 +38,10 @@ CP_MUST_CHECK cp_status cp_oncoming_reaction_notice(cp_oncoming_reaction *reacti
                                                     uint32_t drifting, cp_rng_key seed_key,
                                                     cp_error *error);
 
-/* Command the brakes of those who react, for the coming step. */
+/* Ask for the brakes of those who react, for the coming step. */
 CP_MUST_CHECK cp_status cp_oncoming_reaction_step(cp_oncoming_reaction *reaction,
                                                   const cp_oncoming_reaction_settings *settings,
-                                                  const cp_traffic *traffic, cp_error *error);
+                                                  const cp_traffic *traffic,
+                                                  cp_actuation *actuation, cp_error *error);
 
 #endif

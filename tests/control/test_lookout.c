@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "control/lookout.h"
+
+#include "control/scripted_road.h"
+#include "core/units.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+
+#include <cmocka.h>
+
+static cp_lookout_settings plain(void)
+{
+    return (cp_lookout_settings){.sensor = {100.0, CP_PI, 0.0},
+                                 .detection_probability_1 = 1.0,
+                                 .has_class = {true, true, true, true},
+                                 .ttc_s = 1.5,
+                                 .horizon_s = 4.0,
+                                 .key = cp_rng_key_seed(3)};
+}
+
+/* Step the cars on the road until car 0 has a threat; false after 5 s without. */
+static bool find_threat(cp_traffic *traffic, const cp_lookout_settings *settings, cp_threat *threat)
+{
+    cp_lookout lookout = cp_lookout_create(settings, traffic);
+    cp_error error = {0};
+    bool found = false;
+    while (!found && road.time_s < 5.0) {
+        assert_int_equal(cp_traffic_step(traffic, &error), CP_OK);
+        assert_int_equal(cp_lookout_step(&lookout, &error), CP_OK);
+        const cp_vehicle_motion *own = cp_traffic_motion_of(traffic, 0);
+        assert_int_equal(cp_lookout_track(&lookout, own, &error), CP_OK);
+        found = cp_lookout_threat(&lookout, own, threat);
+    }
+    cp_lookout_destroy(&lookout);
+    return found;
+}
+
+static void the_instant_lies_inside_the_step(void **unused)
+{
+    (void)unused;
+    // 20 m/s to a standing car, gap 50.3 m from 0.1 s on: 1.5 s are left at 0.1 + 1.015 s.
+    cp_lookout_settings settings = plain();
+    const double steps_s[] = {0.1, 0.05, 0.02};
+    for (size_t k = 0; k < 3; k++) {
+        cp_threat threat;
+        cp_traffic *traffic = road_open(steps_s[k]);
+        road_add("own", 0.0, 0.0, 0.0, 20.0);
+        road_add("standing", 50.3 + 4.5, 0.0, 0.0, 0.0);
+        assert_true(find_threat(traffic, &settings, &threat));
+        assert_true(fabs(threat.instant_s - (steps_s[k] + 1.015)) < 1e-9);
+        assert_int_equal(threat.class, CP_TARGET_REAR_END);
+        assert_int_equal(threat.vehicle, 1);
+        cp_traffic_destroy(traffic);
+    }
+}
+
+static void required_deceleration_comes_on_top(void **unused)
+{
+    (void)unused;
+    // v / (2 TTC) >= 8 m/s^2 from TTC = 1.25 s on.
+    cp_lookout_settings settings = plain();
+    settings.required_m_s2 = 8.0;
+    cp_threat threat;
+    cp_traffic *traffic = road_open(0.05);
+    road_add("own", 0.0, 0.0, 0.0, 20.0);
+    road_add("standing", 50.3 + 4.5, 0.0, 0.0, 0.0);
+    assert_true(find_threat(traffic, &settings, &threat));
+    assert_true(fabs(threat.instant_s - (0.05 + 1.265)) < 1e-9);
+    cp_traffic_destroy(traffic);
+}
+
+static void confirmation_takes_its_time(void **unused)
+{
+    (void)unused;
+    // In range from the first step on, a threat at once, known 0.3 s later.
+    cp_lookout_settings settings = plain();
+    settings.confirmation_s = 0.3;
+    cp_threat threat;
+    cp_traffic *traffic = road_open(0.05);
+    road_add("own", 0.0, 0.0, 0.0, 20.0);
+    road_add("standing", 25.0 + 4.5, 0.0, 0.0, 0.0);
+    assert_true(find_threat(traffic, &settings, &threat));
+    assert_true(fabs(threat.instant_s - 0.35) < 1e-9);
+    cp_traffic_destroy(traffic);
+}
+
+static void classes_are_switched_one_by_one(void **unused)
+{
+    (void)unused;
+    static const struct {
+        double x_m, y_m, yaw_rad, speed_m_s, curvature_1_m;
+        cp_target_class class;
+    } TARGETS[] = {
+        {44.5, 0.0, 0.0, 2.0, 0.0, CP_TARGET_REAR_END},
+        {60.0, 0.5, CP_PI, 5.0, 0.0, CP_TARGET_ONCOMING},
+        {40.0, -4.0, 0.5 * CP_PI, 1.5, 0.0, CP_TARGET_CROSSING},
+        {44.0, 4.0, CP_PI, 3.0, 0.1, CP_TARGET_TURNING},
+    };
+    for (size_t k = 0; k < sizeof TARGETS / sizeof *TARGETS; k++) {
+        for (int is_on = 0; is_on < 2; is_on++) {
+            cp_lookout_settings settings = plain();
+            for (int class = 0; class < CP_TARGET_CLASSES; class ++)
+                settings.has_class[class] = ((cp_target_class) class == TARGETS[k].class) == is_on;
+            cp_threat threat;
+            cp_traffic *traffic = road_open(0.05);
+            road_add("own", 0.0, 0.0, 0.0, 15.0);
+            road_add("target", TARGETS[k].x_m, TARGETS[k].y_m, TARGETS[k].yaw_rad,
+                     TARGETS[k].speed_m_s)
+                ->curvature_1_m = TARGETS[k].curvature_1_m;
+            bool found = find_threat(traffic, &settings, &threat);
+            if (found != (bool)is_on)
+                fail_msg("target %zu, class on: %d", k, is_on);
+            if (found)
+                assert_int_equal(threat.class, TARGETS[k].class);
+            cp_traffic_destroy(traffic);
+        }
+    }
+}
+
+static void cars_waiting_beside_a_turn_are_no_threat(void **unused)
+{
+    (void)unused;
+    // Own left turn of radius 10 m, 90 degrees; a car waits where the circle would lead on to.
+    cp_lookout_settings settings = plain();
+    cp_threat threat;
+    cp_traffic *traffic = road_open(0.05);
+    road_add("own", 0.0, 0.0, 0.0, 7.0)->curvature_1_m = 0.1;
+    road_add("waiting", 3.0, 15.5, 0.0, 0.0);
+    assert_false(find_threat(traffic, &settings, &threat));
+    cp_traffic_destroy(traffic);
+
+    // Straight into it, it is one.
+    traffic = road_open(0.05);
+    road_add("own", -20.0, 15.5, 0.0, 7.0);
+    road_add("waiting", 3.0, 15.5, 0.0, 0.0);
+    assert_true(find_threat(traffic, &settings, &threat));
+    cp_traffic_destroy(traffic);
+}
+
+static void what_is_hidden_is_not_known(void **unused)
+{
+    (void)unused;
+    // A standing row of cars beside the way hides one that comes out from behind it.
+    for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
+        cp_lookout_settings settings = plain();
+        settings.has_occlusion = is_hidden;
+        cp_threat threat;
+        cp_traffic *traffic = road_open(0.05);
+        road_add("own", 0.0, 0.0, 0.0, 10.0);
+        road_add("crossing", 42.0, -24.0, 0.5 * CP_PI, 6.0);
+        for (int k = 0; k < 6; k++)
+            road_add("parked", 10.0 + 5.0 * k, -2.2, 0.0, 0.0);
+        settings.confirmation_s = 0.5;
+        assert_true(find_threat(traffic, &settings, &threat));
+        assert_int_equal(threat.vehicle, 1);
+        // In the open it is known long before it is a threat.
+        assert_true(is_hidden ? threat.ttc_s < 1.2 : threat.ttc_s > 1.4);
+        cp_traffic_destroy(traffic);
+    }
+}
+
+static void some_targets_are_never_detected(void **unused)
+{
+    (void)unused;
+    int found = 0;
+    for (int k = 0; k < 60; k++) {
+        cp_lookout_settings settings = plain();
+        settings.detection_probability_1 = 0.5;
+        cp_threat threat;
+        cp_traffic *traffic = road_open(0.1);
+        char id[16];
+        snprintf(id, sizeof id, "standing%d", k);
+        road_add("own", 0.0, 0.0, 0.0, 20.0);
+        road_add(id, 40.0, 0.0, 0.0, 0.0);
+        found += find_threat(traffic, &settings, &threat);
+        cp_traffic_destroy(traffic);
+    }
+    assert_true(found > 15 && found < 45);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_instant_lies_inside_the_step),
+        cmocka_unit_test(required_deceleration_comes_on_top),
+        cmocka_unit_test(confirmation_takes_its_time),
+        cmocka_unit_test(classes_are_switched_one_by_one),
+        cmocka_unit_test(cars_waiting_beside_a_turn_are_no_threat),
+        cmocka_unit_test(what_is_hidden_is_not_known),
+        cmocka_unit_test(some_targets_are_never_detected),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

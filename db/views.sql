@@ -29,6 +29,20 @@ JOIN scenario AS s ON s.id = cv.scenario_id
 JOIN variant AS v ON v.id = cv.variant_id
 WHERE cv.frontal = 1;
 
+-- Every vehicle of every crash, struck on whichever side: what --where and --by of 'crashpulse
+-- compare' choose from.
+DROP VIEW IF EXISTS crash_vehicle_list;
+CREATE VIEW crash_vehicle_list AS
+SELECT s.name AS scenario, v.name AS variant, r.sweep AS sweep, r.number AS replication,
+       r.seed AS seed, r.id AS replication_id, c.time_s AS time_s, c.x_m AS x_m, c.y_m AS y_m,
+       c.closing_speed_m_s AS closing_speed_m_s, c.lateral_offset_m AS lateral_offset_m,
+       c.angle_rad AS angle_rad, c.overlap_1 AS overlap_1, c.validity AS crash_validity, cv.*
+FROM crash_vehicle AS cv
+JOIN crash AS c ON c.id = cv.crash_id
+JOIN replication AS r ON r.id = c.replication_id
+JOIN scenario AS s ON s.id = cv.scenario_id
+JOIN variant AS v ON v.id = cv.variant_id;
+
 -- OLC over the frontally struck vehicles of each variant. The median counts left-censored vehicles
 -- below every value; NULL when it falls among them (then it is below the smallest value) or when
 -- there is no vehicle. share_inside_validity: of the frontal vehicles.

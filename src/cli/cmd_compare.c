@@ -5,17 +5,36 @@
 #include "core/log.h"
 #include "report/answer.h"
 #include "report/comparison_json.h"
+#include "report/grouping.h"
+#include "report/quantity.h"
 
 #include <stdlib.h>
+#include <unistd.h>
 
 typedef struct arguments {
     const char *db_path;
     const char *baseline;
+    const char *scenario;
+    const char *by;
+    const char *where;
+    bool no_store;
     cp_format format;
 } arguments;
 
+enum { KEY_NO_STORE = 256 };
+
 static const struct argp_option OPTIONS[] = {
     {"baseline", 'b', "VARIANT", 0, "compare with this variant (default: the study's baseline)", 0},
+    {"scenario", 's', "NAME", 0, "crashes and exposure of this scenario only", 0},
+    {"by", 'y', "COLUMN", 0,
+     "one comparison for each value: scenario, crash_type, validity, vehicle_model, … (any column "
+     "of the view crash_vehicle_list)",
+     0},
+    {"where", 'w', "SQL", 0,
+     "only vehicles for which this holds, over columns of crash_vehicle_list; exposure stays whole",
+     0},
+    {"no-store", KEY_NO_STORE, NULL, 0, "leave the tables comparison and comparison_figure alone",
+     0},
     {0},
 };
 
@@ -28,6 +47,18 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case 'b':
         a->baseline = argument;
+        return 0;
+    case 's':
+        a->scenario = argument;
+        return 0;
+    case 'y':
+        a->by = argument;
+        return 0;
+    case 'w':
+        a->where = argument;
+        return 0;
+    case KEY_NO_STORE:
+        a->no_store = true;
         return 0;
     case ARGP_KEY_ARG:
         if (a->db_path)
@@ -50,72 +81,166 @@ static const struct argp ARGP = {
     .parser = parse,
     .args_doc = "DB",
     .doc = "Compare the variants of a study: how often it crashes (rates of frontal crashes per "
-           "million vehicle-km) and how severe the crashes are (OLC of the frontally struck "
-           "vehicles), each treatment against the baseline."
+           "million vehicle-km), how severe the crashes are (OLC, delta-v and closing speed of the "
+           "frontally struck vehicles) and what injuries that leads to expect, each treatment "
+           "against the baseline; for counterfactual studies what became of each baseline crash."
            "\v"
            "Intervals by bootstrap and p-values by permutation take whole replications, because "
            "crashes of one replication are not independent; under 20 replications there is no "
            "bootstrap interval. Rates are conditional on the study's driver errors. OLC describes "
-           "the crash pulse of a car.\n\n"
+           "the crash pulse of a car; injuries come from the table risk_function, which is yours "
+           "to edit. The figures are also written to the tables comparison and "
+           "comparison_figure.\n\n"
            "Examples:\n"
            "  crashpulse compare demo.db\n"
-           "  crashpulse compare demo.db --baseline aeb --format json\n",
+           "  crashpulse compare demo.db --baseline aeb --format json\n"
+           "  crashpulse compare demo.db --by crash_type --where \"closing_speed_m_s > 10\"\n"
+           "  crashpulse sql demo.db \"SELECT * FROM comparison_figure WHERE against <> ''\"\n",
     .children = CHILDREN,
 };
 
-static cp_status print_json(const cp_study_data *data, const cp_comparison *comparison,
-                            const char *answer, cp_error *error)
+/* Everything one call works with. */
+typedef struct job {
+    arguments a;
+    cp_store *store;
+    cp_study_data data;
+    cp_grouping grouping;
+    cp_comparison *comparison; /* one a group */
+    char **answer;
+    cp_comparison_options options;
+} job;
+
+static void job_destroy(job *j)
 {
-    json_t *result = cp_comparison_json(data, comparison);
-    if (json_object_set_new(result, "study", json_string(data->name)) != 0 ||
-        json_object_set_new(result, "answer", json_string(answer)) != 0) {
-        json_decref(result);
-        result = NULL;
+    for (size_t k = 0; k < j->grouping.count; k++) {
+        if (j->comparison)
+            cp_comparison_destroy(&j->comparison[k]);
+        if (j->answer)
+            free(j->answer[k]);
     }
-    return cp_json_print(result, stdout, error);
+    free(j->comparison);
+    free(j->answer);
+    cp_grouping_destroy(&j->grouping);
+    cp_study_data_destroy(&j->data);
+    cp_store_close(j->store);
 }
 
-static cp_status print(const cp_study_data *data, const cp_comparison *comparison, cp_format format,
-                       cp_error *error)
+static cp_status compare_groups(job *j, size_t baseline, cp_error *error)
 {
-    char *answer = NULL;
-    cp_status status = cp_comparison_answer(data, comparison, &answer, error);
-    if (status != CP_OK)
-        return status;
-    if (format == CP_FORMAT_JSON)
-        status = print_json(data, comparison, answer, error);
-    else if (format == CP_FORMAT_CSV)
-        status = cp_comparison_print_csv(data, comparison, stdout, error);
-    else
-        status = cp_comparison_print_table(data, comparison, answer, stdout, error);
-    free(answer);
+    j->comparison = calloc(j->grouping.count, sizeof *j->comparison);
+    j->answer = calloc(j->grouping.count, sizeof *j->answer);
+    if (!j->comparison || !j->answer)
+        return cp_fail_memory(error, "a comparison");
+    cp_status status = CP_OK;
+    for (size_t k = 0; k < j->grouping.count && status == CP_OK; k++) {
+        status = cp_compare(&j->data, baseline, j->grouping.slice[k], &j->options,
+                            &j->comparison[k], error);
+        if (status == CP_OK)
+            status = cp_comparison_answer(&j->data, &j->comparison[k], &j->answer[k], error);
+    }
     return status;
+}
+
+static json_t *group_json(const job *j, size_t k)
+{
+    json_t *result = cp_comparison_json(&j->data, &j->comparison[k]);
+    if (j->a.by)
+        json_object_set_new(result, "by_value", json_string(j->grouping.name[k]));
+    if (json_object_set_new(result, "study", json_string(j->data.name)) != 0 ||
+        json_object_set_new(result, "answer", json_string(j->answer[k])) != 0) {
+        json_decref(result);
+        return NULL;
+    }
+    return result;
+}
+
+// One object, or with --by an array of them.
+static cp_status print_json(const job *j, cp_error *error)
+{
+    if (!j->a.by)
+        return cp_json_print(group_json(j, 0), stdout, error);
+    json_t *groups = json_array();
+    for (size_t k = 0; k < j->grouping.count; k++) {
+        if (json_array_append_new(groups, group_json(j, k)) != 0) {
+            json_decref(groups);
+            return cp_fail_memory(error, "a comparison");
+        }
+    }
+    return cp_json_print(groups, stdout, error);
+}
+
+static cp_status print_tables(const job *j, cp_error *error)
+{
+    cp_status status = CP_OK;
+    const char *design = j->data.counterfactual ? "counterfactual"
+                         : j->data.paired       ? "paired seeds"
+                                                : "independent seeds";
+    for (size_t k = 0; k < j->grouping.count && status == CP_OK; k++) {
+        char heading[512];
+        int used = snprintf(heading, sizeof heading, "%sStudy %s, %s", k ? "\n" : "", j->data.name,
+                            design);
+        if (j->a.scenario && used > 0 && (size_t)used < sizeof heading)
+            used += snprintf(heading + used, sizeof heading - (size_t)used, ", scenario %s",
+                             j->a.scenario);
+        if (j->a.by && used > 0 && (size_t)used < sizeof heading)
+            used += snprintf(heading + used, sizeof heading - (size_t)used, ", %s = %s", j->a.by,
+                             j->grouping.name[k]);
+        if (j->a.where && used > 0 && (size_t)used < sizeof heading)
+            snprintf(heading + used, sizeof heading - (size_t)used, ", where %s", j->a.where);
+        status = cp_comparison_print_table(&j->data, &j->comparison[k], heading, j->answer[k],
+                                           stdout, error);
+    }
+    return status;
+}
+
+static cp_status print(const job *j, cp_error *error)
+{
+    if (j->a.format == CP_FORMAT_JSON)
+        return print_json(j, error);
+    if (j->a.format == CP_FORMAT_CSV)
+        return cp_comparison_print_csv(&j->data, j->comparison, j->a.by ? j->grouping.name : NULL,
+                                       j->grouping.count, stdout, error);
+    return print_tables(j, error);
+}
+
+static cp_status store(job *j, cp_error *error)
+{
+    return cp_comparison_store(j->store, &j->data, j->comparison, j->grouping.name,
+                               j->grouping.count, &j->options, j->a.scenario ? j->a.scenario : "",
+                               j->a.by ? j->a.by : "", j->a.where ? j->a.where : "",
+                               j->a.by ? "" : j->answer[0], error);
 }
 
 cp_status cmd_compare(int argc, char **argv, cp_error *error)
 {
-    arguments a = {0};
-    cp_args_parse(&ARGP, argc, argv, &a);
+    job j = {.options = cp_comparison_options_default()};
+    cp_args_parse(&ARGP, argc, argv, &j.a);
 
-    cp_store *store = NULL;
-    cp_study_data data = {0};
-    cp_comparison comparison = {0};
+    // A database that cannot be written can be compared all the same.
+    bool stored = !j.a.no_store;
+    if (stored && access(j.a.db_path, F_OK) == 0 && access(j.a.db_path, W_OK) != 0) {
+        cp_log_warning("%s is read-only: the figures are not stored in it", j.a.db_path);
+        stored = false;
+    }
     size_t baseline = 0;
-    cp_comparison_options options = cp_comparison_options_default();
-    cp_status status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+    cp_status status =
+        cp_store_open(j.a.db_path, stored ? CP_STORE_WRITE : CP_STORE_READ, &j.store, error);
     if (status == CP_OK)
-        status = cp_study_data_read(store, &data, error);
+        status = cp_study_data_read(j.store, &j.data, error);
     if (status == CP_OK)
-        status = cp_study_data_variant(&data, a.baseline, &baseline, error);
-    if (status == CP_OK && data.unfinished > 0)
-        cp_log_warning("replications that are not finished and not counted: %zu", data.unfinished);
+        status = cp_study_data_variant(&j.data, j.a.baseline, &baseline, error);
+    if (status == CP_OK && j.data.unfinished > 0)
+        cp_log_warning("replications that are not finished and not counted: %zu",
+                       j.data.unfinished);
     if (status == CP_OK)
-        status = cp_compare(&data, baseline, (cp_slice){CP_SLICE_ALL, CP_SLICE_ALL}, &options,
-                            &comparison, error);
+        status = cp_grouping_create(j.store, &j.data, j.a.scenario, j.a.by, j.a.where, &j.grouping,
+                                    error);
     if (status == CP_OK)
-        status = print(&data, &comparison, a.format, error);
-    cp_comparison_destroy(&comparison);
-    cp_study_data_destroy(&data);
-    cp_store_close(store);
+        status = compare_groups(&j, baseline, error);
+    if (status == CP_OK && stored)
+        status = store(&j, error);
+    if (status == CP_OK)
+        status = print(&j, error);
+    job_destroy(&j);
     return status;
 }

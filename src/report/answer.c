@@ -56,22 +56,51 @@ static void write_ratio(FILE *out, const cp_contrast_figures *c)
 static void write_contrast(FILE *out, const cp_study_data *data, const cp_comparison *comparison,
                            const cp_contrast_figures *c)
 {
-    const cp_variant_figures *treatment = &comparison->variant[c->variant];
-    const cp_variant_figures *baseline = &comparison->variant[comparison->baseline];
+    const cp_variant_figures *treatment = cp_comparison_variant(comparison, c->variant);
+    const cp_variant_figures *baseline = cp_comparison_variant(comparison, comparison->baseline);
     char median[2][CP_ESTIMATE_TEXT_SIZE], p[CP_ESTIMATE_TEXT_SIZE];
-    const cp_contrast *olc = &c->olc_g[CP_SCOPE_ALL];
+    const cp_contrast *olc = &c->severity[CP_QUANTITY_OLC][CP_SCOPE_ALL];
     fprintf(out, "%s had ", data->variant[c->variant].name);
     write_ratio(out, c);
     fprintf(out,
             " and a median OLC of %s g against %s g over the frontally struck vehicles of its own "
             "crashes (",
-            cp_estimate_text(treatment->olc_g[CP_SCOPE_ALL].median, 1, median[0]),
-            cp_estimate_text(baseline->olc_g[CP_SCOPE_ALL].median, 1, median[1]));
+            cp_estimate_text(treatment->description[CP_QUANTITY_OLC][CP_SCOPE_ALL].median, 1,
+                             median[0]),
+            cp_estimate_text(baseline->description[CP_QUANTITY_OLC][CP_SCOPE_ALL].median, 1,
+                             median[1]));
     if (isnan(olc->cliffs_delta))
         fputs("nothing to compare)", out);
     else
         fprintf(out, "Cliff’s δ = %.2f, %s)", olc->cliffs_delta,
-                p_phrase(c->olc_p_holm[CP_SCOPE_ALL], p));
+                p_phrase(c->severity_p_holm[CP_QUANTITY_OLC][CP_SCOPE_ALL], p));
+}
+
+// What a treatment made of the baseline's crashes: outcomes first, then severity over all of them.
+static void write_pairs(FILE *out, const cp_study_data *data, const cp_counterfactual_figures *c)
+{
+    double valid = c->valid ? (double)c->valid : NAN, percent = 100.0 / valid;
+    const cp_paired *olc = &c->olc_g[CP_PAIRED_ALL];
+    fprintf(out, "with %s %zu of %zu valid baseline crashes were avoided (%.0f %%",
+            data->variant[c->variant].name, c->outcome[CP_OUTCOME_AVOIDED], c->valid,
+            percent * (double)c->outcome[CP_OUTCOME_AVOIDED]);
+    cp_interval share = c->share[CP_OUTCOME_AVOIDED];
+    if (share.status == CP_INTERVAL_VALUE)
+        fprintf(out, ", 95 %% interval %.0f–%.0f", 100.0 * share.low, 100.0 * share.high);
+    fprintf(out, "), %zu mitigated, %zu unchanged, %zu aggravated and %zu with another opponent",
+            c->outcome[CP_OUTCOME_MITIGATED], c->outcome[CP_OUTCOME_UNCHANGED],
+            c->outcome[CP_OUTCOME_AGGRAVATED], c->outcome[CP_OUTCOME_CHANGED_OPPONENT]);
+    if (!isnan(olc->hodges_lehmann)) {
+        char p[CP_ESTIMATE_TEXT_SIZE];
+        fprintf(out, ", and OLC changed by %.1f g (Hodges–Lehmann, avoided = 0 g",
+                olc->hodges_lehmann);
+        if (olc->hodges_lehmann_interval.status == CP_INTERVAL_VALUE)
+            fprintf(out, ", 95 %% interval %.1f to %.1f", olc->hodges_lehmann_interval.low,
+                    olc->hodges_lehmann_interval.high);
+        fprintf(out, ", %s)", p_phrase(c->p_holm[CP_PAIRED_ALL], p));
+    }
+    if (c->crashes > c->valid)
+        fprintf(out, "; %zu more could not be judged", c->crashes - c->valid);
 }
 
 static void write_counts(FILE *out, const cp_study_data *data, const cp_comparison *comparison)
@@ -130,6 +159,14 @@ static void write_driver_errors(FILE *out, const cp_study_data *data, cp_slice s
     }
 }
 
+const cp_variant_figures *cp_comparison_variant(const cp_comparison *comparison, size_t variant)
+{
+    for (size_t k = 0; k < comparison->variant_count; k++)
+        if (comparison->variant[k].variant == variant)
+            return &comparison->variant[k];
+    return NULL;
+}
+
 cp_status cp_comparison_answer(const cp_study_data *data, const cp_comparison *comparison,
                                char **answer, cp_error *error)
 {
@@ -147,6 +184,10 @@ cp_status cp_comparison_answer(const cp_study_data *data, const cp_comparison *c
         fputs(k + 1 < comparison->contrast_count ? "; " : ", from ", out);
     }
     write_counts(out, data, comparison);
+    for (size_t k = 0; k < comparison->counterfactual_count; k++) {
+        fputs("; ", out);
+        write_pairs(out, data, &comparison->counterfactual[k]);
+    }
     fputs(", all conditional on the assumed driver errors (", out);
     write_driver_errors(out, data, comparison->slice);
     fputs("): these are not accident rates of real traffic.", out);

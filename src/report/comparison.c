@@ -1,29 +1,37 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/comparison.h"
 
+#include "report/counterfactual.h"
 #include "report/slice_sample.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 const char *const CP_SCOPE_TEXT[CP_SCOPE_COUNT] = {"all", "inside"};
+const char *const CP_PAIRED_TEXT[CP_PAIRED_COUNT] = {"all_pairs", "conditional_on_crashing"};
+
+#define PRECISION_TARGET_1 0.1
 
 cp_comparison_options cp_comparison_options_default(void)
 {
     return (cp_comparison_options){.repetitions = 2000, .permutations = 1999};
 }
 
+// ---- one variant ---------------------------------------------------------------------------
+
 // Crashes of a variant in the slice, counted by what they are.
 static void count_crashes(const cp_study_data *data, cp_slice slice, cp_variant_figures *figures)
 {
     for (size_t k = 0; k < data->crash_count; k++) {
         const cp_study_crash *crash = &data->crash[k];
-        const cp_study_replication *replication = &data->replication[crash->replication];
-        if (replication->variant != figures->variant || !cp_slice_has_crash(data, slice, crash))
+        if (data->replication[crash->replication].variant != figures->variant ||
+            !cp_slice_has_crash(data, slice, crash))
             continue;
+        bool frontal = cp_slice_has_frontal_crash(data, slice, crash);
         figures->crashes++;
-        figures->frontal_crashes += crash->frontal;
-        figures->front_front_inside += cp_study_crash_front_front(data, crash) && crash->inside;
+        figures->frontal_crashes += frontal;
+        figures->front_front_inside +=
+            frontal && cp_study_crash_front_front(data, crash) && crash->inside;
     }
 }
 
@@ -32,7 +40,8 @@ static void count_vehicles(const cp_study_data *data, cp_slice slice, cp_variant
     for (size_t k = 0; k < data->vehicle_count; k++) {
         const cp_study_vehicle *vehicle = &data->vehicle[k];
         const cp_study_crash *crash = &data->crash[vehicle->crash];
-        if (data->replication[crash->replication].variant != figures->variant ||
+        if (!vehicle->frontal || (slice.chosen && !slice.chosen[k]) ||
+            data->replication[crash->replication].variant != figures->variant ||
             !cp_slice_has_crash(data, slice, crash))
             continue;
         figures->frontal_vehicles++;
@@ -41,19 +50,87 @@ static void count_vehicles(const cp_study_data *data, cp_slice slice, cp_variant
     }
 }
 
-static cp_status describe_quantity(const cp_study_data *data, const cp_replication_set *set,
-                                   cp_slice slice, cp_slice_quantity quantity,
-                                   cp_description *description, cp_error *error)
+static cp_resampling resampling_of(const cp_study_data *data, const cp_comparison_options *options,
+                                   const cp_replication_set *a, const cp_replication_set *b)
 {
-    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
-        cp_sample sample;
-        cp_status status = cp_slice_sample(data, set, slice, scope, quantity, &sample, error);
-        if (status != CP_OK)
-            return status;
-        description[scope] = cp_describe(&sample);
-        cp_sample_destroy(&sample);
+    cp_resampling resampling = cp_resampling_default();
+    resampling.repetitions = options->repetitions;
+    resampling.seed = data->seed;
+    resampling.cluster_count[0] = a->count;
+    resampling.stratum[0] = a->stratum;
+    if (b) {
+        resampling.cluster_count[1] = b->count;
+        resampling.stratum[1] = b->stratum;
+        resampling.paired = data->paired;
+    }
+    return resampling;
+}
+
+static double mean_statistic(const unsigned *weight_a, const unsigned *weight_b,
+                             const void *context)
+{
+    (void)weight_b;
+    return cp_sample_mean(context, weight_a);
+}
+
+// What is given of OLC alone: interval and precision of its mean, band of its distribution.
+static cp_status figure_olc(const cp_sample *sample, const cp_resampling *resampling, int scope,
+                            cp_variant_figures *figures, cp_error *error)
+{
+    cp_interval *interval = &figures->olc_mean_interval[scope];
+    cp_status status = cp_bootstrap(resampling, mean_statistic, sample, interval, error);
+    if (status != CP_OK)
+        return status;
+    figures->olc_mean_precision[scope] = cp_precision_of(cp_sample_mean(sample, NULL), *interval,
+                                                         sample->cluster_count, PRECISION_TARGET_1);
+    return cp_band_of_ecdf(sample, resampling, &figures->olc_band[scope], error);
+}
+
+static cp_status describe(const cp_study_data *data, const cp_replication_set *set, cp_slice slice,
+                          const cp_resampling *resampling, cp_variant_figures *figures,
+                          cp_error *error)
+{
+    for (int q = 0; q < CP_QUANTITY_COUNT; q++) {
+        for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
+            cp_sample sample;
+            cp_status status = cp_slice_sample(data, set, slice, scope, q, &sample, error);
+            if (status != CP_OK)
+                return status;
+            figures->description[q][scope] = cp_describe(&sample);
+            if (q == CP_QUANTITY_OLC)
+                status = figure_olc(&sample, resampling, scope, figures, error);
+            cp_sample_destroy(&sample);
+            if (status != CP_OK)
+                return status;
+        }
     }
     return CP_OK;
+}
+
+static cp_status figure_injuries(const cp_study_data *data, const cp_replication_set *set,
+                                 cp_slice slice, cp_variant_figures *figures, cp_error *error)
+{
+    double *expected = calloc(set->count + 1, sizeof *expected);
+    if (!expected)
+        return cp_fail_memory(error, "expected injuries");
+    cp_status status = CP_OK;
+    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
+        for (size_t k = 0; k < data->risk_count && status == CP_OK; k++) {
+            cp_injury_figures *injury = &figures->injury[scope][k];
+            cp_slice_injuries(data, set, slice, scope, &data->risk[k], expected, &injury->drivers,
+                              &injury->unknown);
+            for (size_t c = 0; c < set->count; c++)
+                injury->expected += expected[c];
+            cp_exposure exposure = {set->count, expected, set->vehicle_km};
+            injury->rate = cp_rate(&exposure) * CP_RATE_PER_KM;
+            status = cp_rate_bootstrap(&exposure, set->stratum, data->seed, &injury->rate_interval,
+                                       error);
+            injury->rate_interval.low *= CP_RATE_PER_KM;
+            injury->rate_interval.high *= CP_RATE_PER_KM;
+        }
+    }
+    free(expected);
+    return status;
 }
 
 static cp_status figure_rate(const cp_study_data *data, const cp_replication_set *set,
@@ -77,12 +154,20 @@ static cp_status figure_rate(const cp_study_data *data, const cp_replication_set
         cp_rate_bootstrap(&exposure, set->stratum, data->seed, &figures->rate_bootstrap, error);
     figures->rate_bootstrap.low *= CP_RATE_PER_KM;
     figures->rate_bootstrap.high *= CP_RATE_PER_KM;
+    figures->rate_precision =
+        cp_precision_of(figures->rate, figures->rate_bootstrap, set->count, PRECISION_TARGET_1);
     return status;
 }
 
 static cp_status figure_variant(const cp_study_data *data, cp_slice slice,
-                                cp_variant_figures *figures, cp_error *error)
+                                const cp_comparison_options *options, cp_variant_figures *figures,
+                                cp_error *error)
 {
+    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
+        figures->injury[scope] = calloc(data->risk_count + 1, sizeof *figures->injury[scope]);
+        if (!figures->injury[scope])
+            return cp_fail_memory(error, "expected injuries");
+    }
     count_crashes(data, slice, figures);
     count_vehicles(data, slice, figures);
     cp_replication_set set;
@@ -90,33 +175,32 @@ static cp_status figure_variant(const cp_study_data *data, cp_slice slice,
     if (status != CP_OK)
         return status;
     figures->replications = set.count;
+    cp_resampling resampling = resampling_of(data, options, &set, NULL);
     status = figure_rate(data, &set, figures, error);
     if (status == CP_OK)
-        status = describe_quantity(data, &set, slice, CP_QUANTITY_OLC, figures->olc_g, error);
+        status = describe(data, &set, slice, &resampling, figures, error);
     if (status == CP_OK)
-        status =
-            describe_quantity(data, &set, slice, CP_QUANTITY_DELTA_V, figures->delta_v_m_s, error);
-    if (status == CP_OK)
-        status = describe_quantity(data, &set, slice, CP_QUANTITY_CLOSING_SPEED,
-                                   figures->closing_speed_m_s, error);
+        status = figure_injuries(data, &set, slice, figures, error);
     cp_replication_set_destroy(&set);
     return status;
 }
+
+// ---- a treatment against the baseline --------------------------------------------------------
 
 static cp_status contrast_severity(const cp_study_data *data, const cp_replication_set set[2],
                                    cp_slice slice, const cp_resampling *resampling,
                                    size_t permutations, cp_contrast_figures *figures,
                                    cp_error *error)
 {
-    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
+    for (int place = 0; place < CP_QUANTITIES_COMPARED * CP_SCOPE_COUNT; place++) {
+        int q = place / CP_SCOPE_COUNT, scope = place % CP_SCOPE_COUNT;
         cp_sample sample[2] = {{0}, {0}};
         cp_status status = CP_OK;
         for (size_t g = 0; g < 2 && status == CP_OK; g++)
-            status =
-                cp_slice_sample(data, &set[g], slice, scope, CP_QUANTITY_OLC, &sample[g], error);
+            status = cp_slice_sample(data, &set[g], slice, scope, q, &sample[g], error);
         if (status == CP_OK)
             status = cp_contrast_samples(&sample[0], &sample[1], resampling, permutations,
-                                         &figures->olc_g[scope], error);
+                                         &figures->severity[q][scope], error);
         cp_sample_destroy(&sample[0]);
         cp_sample_destroy(&sample[1]);
         if (status != CP_OK)
@@ -134,10 +218,52 @@ static cp_status contrast_rates(const cp_replication_set set[2], const cp_resamp
     figures->rate_ratio_poisson = cp_rate_ratio_poisson(&a, &b, resampling->level_1);
     cp_status status =
         cp_rate_ratio_bootstrap(&a, &b, resampling, &figures->rate_ratio_bootstrap, error);
+    figures->rate_ratio_precision = cp_precision_of(
+        figures->rate_ratio, figures->rate_ratio_bootstrap, set[1].count, PRECISION_TARGET_1);
     cp_permutation_test test = {NAN, NAN};
     if (status == CP_OK)
         status = cp_contrast_rates(&a, &b, resampling, permutations, &test, error);
     figures->rate_p = test.p;
+    return status;
+}
+
+static double total(const double *value, size_t count)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < count; k++)
+        sum += value[k];
+    return sum;
+}
+
+// Benefit is 1 - rate ratio, and so are the bounds of its interval, the other way round.
+static cp_status contrast_injuries(const cp_study_data *data, const cp_replication_set set[2],
+                                   cp_slice slice, const cp_resampling *resampling,
+                                   cp_contrast_figures *figures, cp_error *error)
+{
+    double *expected[2] = {calloc(set[0].count + 1, sizeof(double)),
+                           calloc(set[1].count + 1, sizeof(double))};
+    cp_status status = CP_OK;
+    if (!expected[0] || !expected[1])
+        status = cp_fail_memory(error, "expected injuries");
+    for (int scope = 0; scope < CP_SCOPE_COUNT && status == CP_OK; scope++) {
+        for (size_t k = 0; k < data->risk_count && status == CP_OK; k++) {
+            cp_benefit_figures *benefit = &figures->benefit[scope][k];
+            cp_exposure exposure[2];
+            for (int g = 0; g < 2; g++) {
+                cp_slice_injuries(data, &set[g], slice, scope, &data->risk[k], expected[g], NULL,
+                                  NULL);
+                exposure[g] = (cp_exposure){set[g].count, expected[g], set[g].vehicle_km};
+            }
+            cp_interval ratio;
+            benefit->baseline = total(expected[0], set[0].count);
+            benefit->treatment = total(expected[1], set[1].count);
+            benefit->benefit_1 = 1.0 - cp_rate_ratio(&exposure[0], &exposure[1]);
+            status = cp_rate_ratio_bootstrap(&exposure[0], &exposure[1], resampling, &ratio, error);
+            benefit->interval = (cp_interval){ratio.status, 1.0 - ratio.high, 1.0 - ratio.low};
+        }
+    }
+    free(expected[0]);
+    free(expected[1]);
     return status;
 }
 
@@ -147,6 +273,11 @@ static cp_status contrast_variant(const cp_study_data *data, const cp_comparison
 {
     cp_replication_set set[2] = {{0}, {0}};
     cp_slice slice = comparison->slice;
+    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
+        figures->benefit[scope] = calloc(data->risk_count + 1, sizeof *figures->benefit[scope]);
+        if (!figures->benefit[scope])
+            return cp_fail_memory(error, "expected injuries");
+    }
     cp_status status = cp_replication_set_create(data, slice, comparison->baseline, &set[0], error);
     if (status == CP_OK)
         status = cp_replication_set_create(data, slice, figures->variant, &set[1], error);
@@ -156,23 +287,31 @@ static cp_status contrast_variant(const cp_study_data *data, const cp_comparison
     // Paired seeds are compared over the seeds that both variants have finished.
     if (data->paired)
         cp_replication_set_match(data, &set[0], &set[1]);
-    cp_resampling resampling = cp_resampling_default();
-    resampling.repetitions = options->repetitions;
-    resampling.seed = data->seed;
-    resampling.paired = data->paired;
-    for (size_t g = 0; g < 2; g++) {
-        figures->replications[g] = resampling.cluster_count[g] = set[g].count;
-        resampling.stratum[g] = set[g].stratum;
-    }
+    cp_resampling resampling = resampling_of(data, options, &set[0], &set[1]);
+    figures->replications[0] = set[0].count;
+    figures->replications[1] = set[1].count;
     status = contrast_rates(set, &resampling, options->permutations, figures, error);
     if (status == CP_OK)
         status =
             contrast_severity(data, set, slice, &resampling, options->permutations, figures, error);
+    if (status == CP_OK)
+        status = contrast_injuries(data, set, slice, &resampling, figures, error);
 
 done:
     cp_replication_set_destroy(&set[0]);
     cp_replication_set_destroy(&set[1]);
     return status;
+}
+
+// ---- all of them -------------------------------------------------------------------------------
+
+// Where the p-value of a family and its adjusted one stand.
+static double *family_p(cp_contrast_figures *c, int family, bool adjusted)
+{
+    if (family < 0)
+        return adjusted ? &c->rate_p_holm : &c->rate_p;
+    int q = family / CP_SCOPE_COUNT, scope = family % CP_SCOPE_COUNT;
+    return adjusted ? &c->severity_p_holm[q][scope] : &c->severity[q][scope].mann_whitney.p;
 }
 
 // Several treatments against one baseline: every family of p-values is adjusted together.
@@ -183,14 +322,13 @@ static cp_status adjust(cp_comparison *comparison, cp_error *error)
     if (!p)
         return cp_fail_memory(error, "Holm's adjustment");
     cp_status status = CP_OK;
-    for (int family = -1; family < CP_SCOPE_COUNT && status == CP_OK; family++) {
+    int families = CP_QUANTITIES_COMPARED * CP_SCOPE_COUNT;
+    for (int family = -1; family < families && status == CP_OK; family++) {
         for (size_t k = 0; k < count; k++)
-            p[k] = family < 0 ? comparison->contrast[k].rate_p
-                              : comparison->contrast[k].olc_g[family].mann_whitney.p;
+            p[k] = *family_p(&comparison->contrast[k], family, false);
         status = cp_holm_adjust(p, count, error);
         for (size_t k = 0; k < count; k++)
-            *(family < 0 ? &comparison->contrast[k].rate_p_holm
-                         : &comparison->contrast[k].olc_p_holm[family]) = p[k];
+            *family_p(&comparison->contrast[k], family, true) = p[k];
     }
     free(p);
     return status;
@@ -200,28 +338,43 @@ cp_status cp_compare(const cp_study_data *data, size_t baseline, cp_slice slice,
                      const cp_comparison_options *options, cp_comparison *comparison,
                      cp_error *error)
 {
-    *comparison = (cp_comparison){.slice = slice, .baseline = baseline};
+    *comparison =
+        (cp_comparison){.slice = slice, .baseline = baseline, .risk_count = data->risk_count};
     comparison->variant = calloc(data->variant_count + 1, sizeof *comparison->variant);
     comparison->contrast = calloc(data->variant_count + 1, sizeof *comparison->contrast);
     if (!comparison->variant || !comparison->contrast)
         return cp_fail_memory(error, "a comparison");
 
+    // In the counterfactual design only the baseline has replications of its own.
     cp_status status = CP_OK;
     for (size_t k = 0; k < data->variant_count && status == CP_OK; k++) {
+        if (data->counterfactual && k != baseline)
+            continue;
         cp_variant_figures *figures = &comparison->variant[comparison->variant_count++];
         figures->variant = k;
-        status = figure_variant(data, slice, figures, error);
+        status = figure_variant(data, slice, options, figures, error);
         if (status != CP_OK || k == baseline)
             continue;
         cp_contrast_figures *contrast = &comparison->contrast[comparison->contrast_count++];
         contrast->variant = k;
         status = contrast_variant(data, comparison, options, contrast, error);
     }
+    if (status == CP_OK && data->counterfactual)
+        status = cp_compare_counterfactual(data, options, comparison, error);
     return status == CP_OK ? adjust(comparison, error) : status;
 }
 
 void cp_comparison_destroy(cp_comparison *comparison)
 {
+    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
+        for (size_t k = 0; k < comparison->variant_count; k++)
+            free(comparison->variant[k].injury[scope]);
+        for (size_t k = 0; k < comparison->contrast_count; k++)
+            free(comparison->contrast[k].benefit[scope]);
+    }
+    for (size_t k = 0; k < comparison->counterfactual_count; k++)
+        free(comparison->counterfactual[k].benefit);
+    free(comparison->counterfactual);
     free(comparison->variant);
     free(comparison->contrast);
     *comparison = (cp_comparison){0};

@@ -3,8 +3,11 @@
 #define REPORT_COMPARISON_H
 
 #include "report/study_data.h"
+#include "stats/band.h"
 #include "stats/contrast.h"
 #include "stats/describe.h"
+#include "stats/paired.h"
+#include "stats/precision.h"
 #include "stats/rates.h"
 
 /* Variants compared over one slice of a study. Rate and severity are kept apart: the crashes of a
@@ -12,9 +15,13 @@
 
 #define CP_SLICE_ALL SIZE_MAX
 
+/* A scenario restricts exposure too; everything else restricts crashes and their vehicles only. */
 typedef struct cp_slice {
-    size_t scenario;   /* index, or CP_SLICE_ALL */
-    size_t crash_type; /* index, or CP_SLICE_ALL */
+    size_t scenario;             /* index, or CP_SLICE_ALL */
+    size_t crash_type;           /* index, or CP_SLICE_ALL */
+    const unsigned char *chosen; /* of each vehicle of the study, 1 or 0, borrowed; NULL: all. A
+                                    crash belongs when one of its vehicles does, a frontal one when
+                                    a frontally struck one does */
 } cp_slice;
 
 /* Severity is given over all frontally struck vehicles and over those inside the range the
@@ -25,6 +32,38 @@ enum { CP_SCOPE_ALL, CP_SCOPE_INSIDE, CP_SCOPE_COUNT };
 extern const char *const CP_SCOPE_TEXT[CP_SCOPE_COUNT];
 
 #define CP_RATE_PER_KM 1e6 /* rates are per million vehicle-km */
+
+/* Distributions that are described. */
+typedef enum cp_slice_quantity {
+    CP_QUANTITY_OLC,
+    CP_QUANTITY_DELTA_V,
+    CP_QUANTITY_CLOSING_SPEED,
+    CP_QUANTITY_LATERAL_OFFSET,
+    CP_QUANTITY_ANGLE,
+    CP_QUANTITY_COUNT
+} cp_slice_quantity;
+
+/* Those that are compared: the first ones. */
+#define CP_QUANTITIES_COMPARED 3
+
+/* Expected injured drivers by one risk function: the sum of the probabilities over both drivers of
+ * the frontal crashes, or over those whose vehicle is inside validity. */
+typedef struct cp_injury_figures {
+    size_t drivers; /* with a known predictor */
+    size_t unknown; /* without */
+    double expected;
+    double rate; /* expected per 10^6 veh-km; NAN without exposure */
+    cp_interval rate_interval;
+} cp_injury_figures;
+
+/* Benefit: 1 - rate of the treatment over rate of the baseline, of expected injured drivers per
+ * veh-km; counterfactual: per valid pair, avoided counting 0. */
+typedef struct cp_benefit_figures {
+    double baseline; /* expected, over what is compared */
+    double treatment;
+    double benefit_1; /* NAN without any expected with the baseline */
+    cp_interval interval;
+} cp_benefit_figures;
 
 typedef struct cp_variant_figures {
     size_t variant;
@@ -39,11 +78,14 @@ typedef struct cp_variant_figures {
     cp_interval rate_bootstrap;
     double dispersion_1; /* of frontal crashes over replications; NAN when unknown */
     size_t frontal_vehicles;
-    size_t simulation_failed; /* of these: no OLC, not even censored */
-    size_t inside;            /* of these inside validity */
-    cp_description olc_g[CP_SCOPE_COUNT];
-    cp_description delta_v_m_s[CP_SCOPE_COUNT];
-    cp_description closing_speed_m_s[CP_SCOPE_COUNT];
+    size_t simulation_failed;    /* of these: no OLC, not even censored */
+    size_t inside;               /* of these inside validity */
+    cp_precision rate_precision; /* of the bootstrap interval, target +-10 % */
+    cp_description description[CP_QUANTITY_COUNT][CP_SCOPE_COUNT]; /* over frontally struck ones */
+    cp_interval olc_mean_interval[CP_SCOPE_COUNT];
+    cp_precision olc_mean_precision[CP_SCOPE_COUNT]; /* target +-10 % */
+    cp_band olc_band[CP_SCOPE_COUNT];                /* of the distribution function */
+    cp_injury_figures *injury[CP_SCOPE_COUNT];       /* one a risk function */
 } cp_variant_figures;
 
 /* A treatment against the baseline; differences are treatment minus baseline. */
@@ -55,17 +97,46 @@ typedef struct cp_contrast_figures {
     cp_interval rate_ratio_bootstrap;
     double rate_p;      /* by permutation of whole replications */
     double rate_p_holm; /* adjusted for the number of treatments */
-    cp_contrast olc_g[CP_SCOPE_COUNT];
-    double olc_p_holm[CP_SCOPE_COUNT]; /* of the Mann-Whitney tests */
+    cp_precision rate_ratio_precision;
+    cp_contrast severity[CP_QUANTITIES_COMPARED][CP_SCOPE_COUNT];
+    double severity_p_holm[CP_QUANTITIES_COMPARED][CP_SCOPE_COUNT]; /* of the Mann-Whitney tests */
+    cp_benefit_figures *benefit[CP_SCOPE_COUNT];                    /* one a risk function */
 } cp_contrast_figures;
+
+/* Paired severity of the pairs: (a) over all valid pairs, avoided = 0 g; (b) conditional on
+ * crashing, over the pairs that crash in both. */
+enum { CP_PAIRED_ALL, CP_PAIRED_CRASHING, CP_PAIRED_COUNT };
+
+/* "all_pairs", "conditional_on_crashing". */
+extern const char *const CP_PAIRED_TEXT[CP_PAIRED_COUNT];
+
+/* A treatment in the counterfactual design: what became of the baseline's frontal crashes. */
+typedef struct cp_counterfactual_figures {
+    size_t variant;
+    size_t crashes;                    /* of the baseline in the slice, = sum of the outcomes */
+    size_t valid;                      /* of these not invalid */
+    size_t outcome[CP_OUTCOME_NO_OLC]; /* by closing speed */
+    size_t outcome_olc[CP_OUTCOME_NO_OLC + 1];
+    cp_interval
+        share[CP_OUTCOME_NO_OLC]; /* of the valid pairs, by replications; [invalid] unused */
+    size_t reason[CP_NULL_NOT_REPRODUCED + 1]; /* why invalid */
+    double new_crashes;                        /* between others, over the valid pairs */
+    cp_paired olc_g[CP_PAIRED_COUNT];
+    cp_paired closing_speed_m_s[CP_PAIRED_COUNT];
+    double p_holm[CP_PAIRED_COUNT]; /* of the signed-rank tests of OLC */
+    cp_benefit_figures *benefit;    /* one a risk function, both drivers, all valid pairs */
+} cp_counterfactual_figures;
 
 typedef struct cp_comparison {
     cp_slice slice;
     size_t baseline;
+    size_t risk_count; /* of the arrays of injuries and benefits */
     size_t variant_count;
     cp_variant_figures *variant; /* in the study's order */
     size_t contrast_count;
-    cp_contrast_figures *contrast; /* every other variant against the baseline */
+    cp_contrast_figures *contrast; /* every other variant with replications against the baseline */
+    size_t counterfactual_count;
+    cp_counterfactual_figures *counterfactual; /* every treatment with pairs */
 } cp_comparison;
 
 typedef struct cp_comparison_options {

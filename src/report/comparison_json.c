@@ -31,32 +31,87 @@ static json_t *description_json(const cp_description *d)
         estimate_json(d->p90), "p95", estimate_json(d->p95), "max", estimate_json(d->maximum));
 }
 
-static json_t *scopes_json(const cp_description d[CP_SCOPE_COUNT])
+/* How the quantities are called, in the order of cp_slice_quantity. */
+static const char *const QUANTITY[CP_QUANTITY_COUNT] = {"olc_g", "delta_v_m_s", "closing_speed_m_s",
+                                                        "lateral_offset_m", "angle_rad"};
+
+static json_t *precision_json(cp_precision precision)
 {
-    return json_pack("{s:o, s:o}", CP_SCOPE_TEXT[CP_SCOPE_ALL], description_json(&d[CP_SCOPE_ALL]),
-                     CP_SCOPE_TEXT[CP_SCOPE_INSIDE], description_json(&d[CP_SCOPE_INSIDE]));
+    return json_pack("{s:o, s:o, s:o}", "half_width", cp_number_json(precision.half_width),
+                     "relative_1", cp_number_json(precision.relative_1),
+                     "replications_for_10_percent", cp_number_json(precision.replications_needed));
+}
+
+// {"all": …, "inside": …} of a quantity; OLC has its mean's interval and its curve's band too.
+static json_t *scopes_json(const cp_variant_figures *v, int quantity)
+{
+    json_t *scopes = json_object();
+    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
+        json_t *d = description_json(&v->description[quantity][scope]);
+        if (quantity == CP_QUANTITY_OLC) {
+            json_object_set_new(d, "mean_interval", interval_json(v->olc_mean_interval[scope]));
+            json_object_set_new(d, "mean_precision", precision_json(v->olc_mean_precision[scope]));
+            json_object_set_new(d, "ecdf_band_half_width_1",
+                                cp_number_json(v->olc_band[scope].half_width_1));
+        }
+        json_object_set_new(scopes, CP_SCOPE_TEXT[scope], d);
+    }
+    return scopes;
+}
+
+static json_t *injuries_json(const cp_study_data *data, const cp_variant_figures *v)
+{
+    json_t *scopes = json_object();
+    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
+        json_t *list = json_array();
+        for (size_t k = 0; k < data->risk_count; k++) {
+            const cp_injury_figures *i = &v->injury[scope][k];
+            json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:I, s:f, s:o, s:o}", "function",
+                                                  data->risk[k].name, "level", data->risk[k].level,
+                                                  "drivers", (json_int_t)i->drivers, "unknown",
+                                                  (json_int_t)i->unknown, "expected", i->expected,
+                                                  "per_million_km", cp_number_json(i->rate),
+                                                  "interval", interval_json(i->rate_interval)));
+        }
+        json_object_set_new(scopes, CP_SCOPE_TEXT[scope], list);
+    }
+    return scopes;
+}
+
+static json_t *benefits_json(const cp_study_data *data, const cp_benefit_figures *benefit)
+{
+    json_t *list = json_array();
+    for (size_t k = 0; k < data->risk_count; k++)
+        json_array_append_new(list, json_pack("{s:s, s:s, s:f, s:f, s:o, s:o}", "function",
+                                              data->risk[k].name, "level", data->risk[k].level,
+                                              "baseline", benefit[k].baseline, "treatment",
+                                              benefit[k].treatment, "benefit_1",
+                                              cp_number_json(benefit[k].benefit_1), "interval",
+                                              interval_json(benefit[k].interval)));
+    return list;
 }
 
 static json_t *variant_json(const cp_study_data *data, const cp_comparison *comparison,
                             const cp_variant_figures *v)
 {
-    json_t *rate =
-        json_pack("{s:o, s:o, s:o, s:o}", "value", cp_number_json(v->rate), "garwood",
-                  interval_json(v->rate_garwood), "bootstrap", interval_json(v->rate_bootstrap),
-                  "dispersion", cp_number_json(v->dispersion_1));
+    json_t *rate = json_pack(
+        "{s:o, s:o, s:o, s:o, s:o}", "value", cp_number_json(v->rate), "garwood",
+        interval_json(v->rate_garwood), "bootstrap", interval_json(v->rate_bootstrap), "dispersion",
+        cp_number_json(v->dispersion_1), "precision", precision_json(v->rate_precision));
     double share = v->frontal_vehicles ? (double)v->inside / (double)v->frontal_vehicles : NAN;
-    return json_pack(
-        "{s:s, s:b, s:I, s:f, s:f, s:I, s:I, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o}",
-        "variant", data->variant[v->variant].name, "is_baseline",
-        v->variant == comparison->baseline, "replications", (json_int_t)v->replications,
-        "vehicle_km", v->vehicle_km, "vehicle_h", v->vehicle_h, "crashes", (json_int_t)v->crashes,
-        "frontal_crashes", (json_int_t)v->frontal_crashes, "front_front_inside",
-        (json_int_t)v->front_front_inside, "frontal_crashes_per_million_km", rate,
-        "frontal_vehicles", (json_int_t)v->frontal_vehicles, "simulation_failed",
-        (json_int_t)v->simulation_failed, "inside_validity", (json_int_t)v->inside,
-        "share_inside_validity", cp_number_json(share), "olc_g", scopes_json(v->olc_g),
-        "delta_v_m_s", scopes_json(v->delta_v_m_s), "closing_speed_m_s",
-        scopes_json(v->closing_speed_m_s));
+    json_t *object = json_pack(
+        "{s:s, s:b, s:I, s:f, s:f, s:I, s:I, s:I, s:o, s:I, s:I, s:I, s:o}", "variant",
+        data->variant[v->variant].name, "is_baseline", v->variant == comparison->baseline,
+        "replications", (json_int_t)v->replications, "vehicle_km", v->vehicle_km, "vehicle_h",
+        v->vehicle_h, "crashes", (json_int_t)v->crashes, "frontal_crashes",
+        (json_int_t)v->frontal_crashes, "front_front_inside", (json_int_t)v->front_front_inside,
+        "frontal_crashes_per_million_km", rate, "frontal_vehicles", (json_int_t)v->frontal_vehicles,
+        "simulation_failed", (json_int_t)v->simulation_failed, "inside_validity",
+        (json_int_t)v->inside, "share_inside_validity", cp_number_json(share));
+    for (int q = 0; q < CP_QUANTITY_COUNT; q++)
+        json_object_set_new(object, QUANTITY[q], scopes_json(v, q));
+    json_object_set_new(object, "expected_injured_drivers", injuries_json(data, v));
+    return object;
 }
 
 static json_t *severity_json(const cp_contrast *c, double p_holm)
@@ -77,40 +132,95 @@ static json_t *severity_json(const cp_contrast *c, double p_holm)
 
 static json_t *contrast_json(const cp_study_data *data, const cp_contrast_figures *c)
 {
-    json_t *olc =
-        json_pack("{s:o, s:o}", CP_SCOPE_TEXT[CP_SCOPE_ALL],
-                  severity_json(&c->olc_g[CP_SCOPE_ALL], c->olc_p_holm[CP_SCOPE_ALL]),
-                  CP_SCOPE_TEXT[CP_SCOPE_INSIDE],
-                  severity_json(&c->olc_g[CP_SCOPE_INSIDE], c->olc_p_holm[CP_SCOPE_INSIDE]));
-    return json_pack("{s:s, s:b, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "variant",
-                     data->variant[c->variant].name, "paired", data->paired,
-                     "baseline_replications", (json_int_t)c->replications[0],
-                     "treatment_replications", (json_int_t)c->replications[1], "rate_ratio",
-                     cp_number_json(c->rate_ratio), "rate_ratio_poisson",
-                     interval_json(c->rate_ratio_poisson), "rate_ratio_bootstrap",
-                     interval_json(c->rate_ratio_bootstrap), "rate_p", cp_number_json(c->rate_p),
-                     "rate_p_holm", cp_number_json(c->rate_p_holm), "olc_g", olc);
+    json_t *object =
+        json_pack("{s:s, s:b, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "variant",
+                  data->variant[c->variant].name, "paired", data->paired, "baseline_replications",
+                  (json_int_t)c->replications[0], "treatment_replications",
+                  (json_int_t)c->replications[1], "rate_ratio", cp_number_json(c->rate_ratio),
+                  "rate_ratio_poisson", interval_json(c->rate_ratio_poisson),
+                  "rate_ratio_bootstrap", interval_json(c->rate_ratio_bootstrap),
+                  "rate_ratio_precision", precision_json(c->rate_ratio_precision), "rate_p",
+                  cp_number_json(c->rate_p), "rate_p_holm", cp_number_json(c->rate_p_holm));
+    for (int q = 0; q < CP_QUANTITIES_COMPARED; q++) {
+        json_t *scopes = json_object();
+        for (int scope = 0; scope < CP_SCOPE_COUNT; scope++)
+            json_object_set_new(
+                scopes, CP_SCOPE_TEXT[scope],
+                severity_json(&c->severity[q][scope], c->severity_p_holm[q][scope]));
+        json_object_set_new(object, QUANTITY[q], scopes);
+    }
+    json_t *benefit = json_object();
+    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++)
+        json_object_set_new(benefit, CP_SCOPE_TEXT[scope], benefits_json(data, c->benefit[scope]));
+    json_object_set_new(object, "injury_benefit", benefit);
+    return object;
+}
+
+static json_t *paired_json(const cp_paired *p, double p_holm)
+{
+    return json_pack(
+        "{s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "pairs", (json_int_t)p->count,
+        "lower", (json_int_t)p->lower, "higher", (json_int_t)p->higher, "mean",
+        cp_number_json(p->mean), "mean_interval", interval_json(p->mean_interval), "hodges_lehmann",
+        cp_number_json(p->hodges_lehmann), "hodges_lehmann_interval",
+        interval_json(p->hodges_lehmann_interval), "signed_rank_v",
+        cp_number_json(p->signed_rank.statistic), "signed_rank_p", cp_number_json(p->signed_rank.p),
+        "signed_rank_p_holm", cp_number_json(p_holm));
+}
+
+static json_t *counterfactual_json(const cp_study_data *data, const cp_counterfactual_figures *c)
+{
+    json_t *outcomes = json_object(), *by_olc = json_object(), *reasons = json_object();
+    json_t *shares = json_object(), *olc = json_object(), *speed = json_object();
+    for (int o = 0; o <= CP_OUTCOME_NO_OLC; o++) {
+        const char *name = cp_outcome_text((cp_outcome)o);
+        json_object_set_new(by_olc, name, json_integer((json_int_t)c->outcome_olc[o]));
+        if (o < CP_OUTCOME_NO_OLC)
+            json_object_set_new(outcomes, name, json_integer((json_int_t)c->outcome[o]));
+        if (o != CP_OUTCOME_INVALID && o < CP_OUTCOME_NO_OLC)
+            json_object_set_new(shares, name, interval_json(c->share[o]));
+    }
+    for (int r = CP_NULL_REPRODUCED + 1; r <= CP_NULL_NOT_REPRODUCED; r++)
+        json_object_set_new(reasons, cp_null_status_text((cp_null_status)r),
+                            json_integer((json_int_t)c->reason[r]));
+    for (int which = 0; which < CP_PAIRED_COUNT; which++) {
+        json_object_set_new(olc, CP_PAIRED_TEXT[which],
+                            paired_json(&c->olc_g[which], c->p_holm[which]));
+        json_object_set_new(speed, CP_PAIRED_TEXT[which],
+                            paired_json(&c->closing_speed_m_s[which], NAN));
+    }
+    return json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:f, s:o, s:o, s:o}", "variant",
+                     data->variant[c->variant].name, "crashes", (json_int_t)c->crashes, "valid",
+                     (json_int_t)c->valid, "outcomes", outcomes, "shares", shares,
+                     "outcomes_by_olc", by_olc, "invalid_reasons", reasons, "new_crashes",
+                     c->new_crashes, "olc_change_g", olc, "closing_speed_change_m_s", speed,
+                     "injury_benefit", benefits_json(data, c->benefit));
 }
 
 json_t *cp_comparison_json(const cp_study_data *data, const cp_comparison *comparison)
 {
-    json_t *variants = json_array(), *contrasts = json_array();
+    json_t *variants = json_array(), *contrasts = json_array(), *pairs = json_array();
     for (size_t k = 0; k < comparison->variant_count; k++)
         json_array_append_new(variants, variant_json(data, comparison, &comparison->variant[k]));
     for (size_t k = 0; k < comparison->contrast_count; k++)
         json_array_append_new(contrasts, contrast_json(data, &comparison->contrast[k]));
+    for (size_t k = 0; k < comparison->counterfactual_count; k++)
+        json_array_append_new(pairs, counterfactual_json(data, &comparison->counterfactual[k]));
 
     // An array that is short of a row would be a wrong result: then none at all.
     if (json_array_size(variants) != comparison->variant_count ||
-        json_array_size(contrasts) != comparison->contrast_count) {
+        json_array_size(contrasts) != comparison->contrast_count ||
+        json_array_size(pairs) != comparison->counterfactual_count) {
         json_decref(variants);
         json_decref(contrasts);
+        json_decref(pairs);
         return NULL;
     }
     cp_slice slice = comparison->slice;
-    return json_pack(
-        "{s:s?, s:s?, s:s, s:o, s:o}", "scenario",
-        slice.scenario == CP_SLICE_ALL ? NULL : data->scenario[slice.scenario].name, "crash_type",
-        slice.crash_type == CP_SLICE_ALL ? NULL : data->crash_type[slice.crash_type], "baseline",
-        data->variant[comparison->baseline].name, "variants", variants, "contrasts", contrasts);
+    return json_pack("{s:s?, s:s?, s:s, s:o, s:o, s:o}", "scenario",
+                     slice.scenario == CP_SLICE_ALL ? NULL : data->scenario[slice.scenario].name,
+                     "crash_type",
+                     slice.crash_type == CP_SLICE_ALL ? NULL : data->crash_type[slice.crash_type],
+                     "baseline", data->variant[comparison->baseline].name, "variants", variants,
+                     "contrasts", contrasts, "counterfactual", pairs);
 }

@@ -72,8 +72,11 @@ static json_t *vehicles_json(const cp_study_data *data, size_t every)
         column[c] = json_array();
         json_object_set_new(object, NAME[c], column[c]);
     }
-    for (size_t k = 0; k < data->vehicle_count; k += every) {
+    size_t place = 0;
+    for (size_t k = 0; k < data->vehicle_count; k++) {
         const cp_study_vehicle *v = &data->vehicle[k];
+        if (!v->frontal || place++ % every != 0)
+            continue;
         const cp_study_crash *crash = &data->crash[v->crash];
         const cp_study_replication *r = &data->replication[crash->replication];
         json_array_append_new(column[VARIANT], json_integer((json_int_t)r->variant));
@@ -102,6 +105,8 @@ static cp_status validity_counts(const cp_study_data *data, json_t **counts, cp_
         return cp_fail_memory(error, "a table of a report");
     }
     for (size_t k = 0; k < data->vehicle_count; k++) {
+        if (!data->vehicle[k].frontal)
+            continue;
         const cp_study_crash *crash = &data->crash[data->vehicle[k].crash];
         const cp_study_replication *r = &data->replication[crash->replication];
         size_t cell = (r->scenario * data->crash_type_count + crash->crash_type);
@@ -153,7 +158,7 @@ static cp_status add_slices(const cp_study_data *data, size_t baseline,
     size_t types = frontal_types(data);
     for (size_t s = 0; s <= data->scenario_count; s++) {
         for (size_t t = 0; t <= types; t++) {
-            cp_slice slice = {s ? s - 1 : CP_SLICE_ALL, t ? t - 1 : CP_SLICE_ALL};
+            cp_slice slice = {s ? s - 1 : CP_SLICE_ALL, t ? t - 1 : CP_SLICE_ALL, NULL};
             char *answer;
             cp_status status = add_slice(data, baseline, slice, options, slices, &answer, error);
             if (s == 0 && t == 0)
@@ -182,7 +187,7 @@ cp_status cp_page_data(const cp_study_data *data, size_t baseline,
         json_decref(counts);
         return status;
     }
-    size_t every = 1 + data->vehicle_count / (CP_PAGE_VEHICLES_MAX + 1);
+    size_t every = 1 + data->frontal_vehicle_count / (CP_PAGE_VEHICLES_MAX + 1);
     *page = json_pack(
         "{s:O, s:O, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:o}", "study",
         json_array_get(json_object_get(data->about, "study"), 0), "about", data->about,

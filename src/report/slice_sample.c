@@ -10,11 +10,33 @@ bool cp_study_crash_front_front(const cp_study_data *data, const cp_study_crash 
     return strcmp(data->crash_type[crash->crash_type], "front-front") == 0;
 }
 
-bool cp_slice_has_crash(const cp_study_data *data, cp_slice slice, const cp_study_crash *crash)
+// Whether the slice's conditions on the crash itself hold.
+static bool fits(const cp_study_data *data, cp_slice slice, const cp_study_crash *crash)
 {
     size_t scenario = data->replication[crash->replication].scenario;
     return (slice.scenario == CP_SLICE_ALL || slice.scenario == scenario) &&
            (slice.crash_type == CP_SLICE_ALL || slice.crash_type == crash->crash_type);
+}
+
+static bool chosen(cp_slice slice, size_t vehicle)
+{
+    return !slice.chosen || slice.chosen[vehicle];
+}
+
+bool cp_slice_has_crash(const cp_study_data *data, cp_slice slice, const cp_study_crash *crash)
+{
+    size_t a = 2 * (size_t)(crash - data->crash);
+    return fits(data, slice, crash) && (chosen(slice, a) || chosen(slice, a + 1));
+}
+
+bool cp_slice_has_frontal_crash(const cp_study_data *data, cp_slice slice,
+                                const cp_study_crash *crash)
+{
+    size_t a = 2 * (size_t)(crash - data->crash);
+    if (!crash->frontal || !fits(data, slice, crash))
+        return false;
+    return !slice.chosen || (chosen(slice, a) && data->vehicle[a].frontal) ||
+           (chosen(slice, a + 1) && data->vehicle[a + 1].frontal);
 }
 
 // Cluster of a replication in a set, SIZE_MAX when it is not there; the set is ascending.
@@ -57,7 +79,7 @@ cp_status cp_replication_set_create(const cp_study_data *data, cp_slice slice, s
     for (size_t k = 0; k < data->crash_count; k++) {
         const cp_study_crash *crash = &data->crash[k];
         size_t cluster = cluster_of(set, crash->replication);
-        if (cluster != SIZE_MAX && crash->frontal && cp_slice_has_crash(data, slice, crash))
+        if (cluster != SIZE_MAX && cp_slice_has_frontal_crash(data, slice, crash))
             set->frontal_crashes[cluster]++;
     }
     return CP_OK;
@@ -119,6 +141,10 @@ static double observation(const cp_study_vehicle *vehicle, cp_slice_quantity qua
 {
     if (quantity == CP_QUANTITY_CLOSING_SPEED)
         return vehicle->closing_speed_m_s;
+    if (quantity == CP_QUANTITY_LATERAL_OFFSET)
+        return vehicle->lateral_offset_m;
+    if (quantity == CP_QUANTITY_ANGLE)
+        return vehicle->angle_rad;
     if (vehicle->olc == CP_OLC_FAILED)
         return NAN;
     if (quantity == CP_QUANTITY_DELTA_V)
@@ -142,8 +168,8 @@ cp_status cp_slice_sample(const cp_study_data *data, const cp_replication_set *s
         const cp_study_crash *crash = &data->crash[vehicle->crash];
         double seen = observation(vehicle, quantity);
         size_t own = cluster_of(set, crash->replication);
-        if (own == SIZE_MAX || isnan(seen) || !cp_slice_has_crash(data, slice, crash) ||
-            (scope == CP_SCOPE_INSIDE && vehicle->validity != 0))
+        if (own == SIZE_MAX || isnan(seen) || !vehicle->frontal || !chosen(slice, k) ||
+            !fits(data, slice, crash) || (scope == CP_SCOPE_INSIDE && vehicle->validity != 0))
             continue;
         value[count] = seen;
         cluster[count++] = own;
@@ -154,4 +180,32 @@ done:
     free(value);
     free(cluster);
     return status;
+}
+
+void cp_slice_injuries(const cp_study_data *data, const cp_replication_set *set, cp_slice slice,
+                       int scope, const cp_study_risk *risk, double *expected, size_t *drivers,
+                       size_t *unknown)
+{
+    size_t known = 0, missing = 0;
+    for (size_t k = 0; k < set->count; k++)
+        expected[k] = 0.0;
+    for (size_t k = 0; k < data->vehicle_count; k++) {
+        const cp_study_vehicle *vehicle = &data->vehicle[k];
+        const cp_study_crash *crash = &data->crash[vehicle->crash];
+        size_t own = cluster_of(set, crash->replication);
+        if (own == SIZE_MAX || !crash->frontal || !chosen(slice, k) || !fits(data, slice, crash) ||
+            (scope == CP_SCOPE_INSIDE && vehicle->validity != 0))
+            continue;
+        double p = cp_risk_probability(&risk->function, vehicle->predictor[risk->predictor]);
+        if (isnan(p)) {
+            missing++;
+            continue;
+        }
+        known++;
+        expected[own] += p;
+    }
+    if (drivers)
+        *drivers = known;
+    if (unknown)
+        *unknown = missing;
 }

@@ -8,8 +8,10 @@
 
 bool cp_study_crash_front_front(const cp_study_data *data, const cp_study_crash *crash);
 
-/* Whether a crash belongs to a slice. */
+/* Whether a crash belongs to a slice; whether it does as a frontal one. */
 bool cp_slice_has_crash(const cp_study_data *data, cp_slice slice, const cp_study_crash *crash);
+bool cp_slice_has_frontal_crash(const cp_study_data *data, cp_slice slice,
+                                const cp_study_crash *crash);
 
 /* The finished replications of a variant in a slice; each is a cluster, its scenario a stratum. */
 typedef struct cp_replication_set {
@@ -35,17 +37,17 @@ void cp_replication_set_match(const cp_study_data *data, cp_replication_set *a,
 /* Frontal crashes over vehicle-km; borrows from the set. */
 cp_exposure cp_replication_set_exposure(const cp_replication_set *set);
 
-typedef enum cp_slice_quantity {
-    CP_QUANTITY_OLC,
-    CP_QUANTITY_DELTA_V,
-    CP_QUANTITY_CLOSING_SPEED
-} cp_slice_quantity;
-
 /* A quantity of the frontally struck vehicles of the set's replications; scope is CP_SCOPE_... A
  * failed crash simulation gives no observation of OLC and delta-v. The caller destroys. Error:
  * CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_slice_sample(const cp_study_data *data, const cp_replication_set *set,
                                         cp_slice slice, int scope, cp_slice_quantity quantity,
                                         cp_sample *sample, cp_error *error);
+
+/* Expected injured drivers of each replication of the set, written to expected[cluster]; counts of
+ * drivers with and without a known predictor (may be NULL). */
+void cp_slice_injuries(const cp_study_data *data, const cp_replication_set *set, cp_slice slice,
+                       int scope, const cp_study_risk *risk, double *expected, size_t *drivers,
+                       size_t *unknown);
 
 #endif

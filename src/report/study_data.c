@@ -121,6 +121,10 @@ static cp_status read_crash(void *context, const cp_row *row, cp_error *error)
         .crash_type = (size_t)row->cell[1].integer,
         .frontal = row->cell[2].integer != 0,
         .inside = row->cell[3].integer != 0,
+        .id = row->cell[4].integer,
+        .time_s = row->cell[5].real,
+        .x_m = row->cell[6].real,
+        .y_m = row->cell[7].real,
     };
     return CP_OK;
 }
@@ -133,7 +137,8 @@ static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
         grow((void **)&data->vehicle, data->vehicle_count, &r->room, sizeof *data->vehicle, error);
     if (status != CP_OK)
         return status;
-    data->vehicle[data->vehicle_count++] = (cp_study_vehicle){
+    cp_study_vehicle *vehicle = &data->vehicle[data->vehicle_count++];
+    *vehicle = (cp_study_vehicle){
         .crash = (size_t)row->cell[0].integer,
         .role = row->cell[1].text[0],
         .olc = (cp_olc_known)row->cell[2].integer,
@@ -143,7 +148,92 @@ static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
         .lateral_offset_m = row->cell[6].real,
         .angle_rad = row->cell[7].real,
         .validity = (size_t)row->cell[8].integer,
+        .frontal = row->cell[9].integer != 0,
     };
+    for (int k = 0; k < CP_PREDICTOR_COUNT; k++)
+        vehicle->predictor[k] = row->cell[10 + k].real;
+    data->frontal_vehicle_count += vehicle->frontal;
+    return CP_OK;
+}
+
+static const char *const PREDICTOR_COLUMN[] = {
+#define CP_PREDICTOR_COLUMN(name, column) column,
+    CP_PREDICTORS(CP_PREDICTOR_COLUMN)
+#undef CP_PREDICTOR_COLUMN
+};
+
+static cp_status read_risk(void *context, const cp_row *row, cp_error *error)
+{
+    reader *r = context;
+    cp_study_data *data = r->data;
+    cp_status status =
+        grow((void **)&data->risk, data->risk_count, &r->room, sizeof *data->risk, error);
+    if (status != CP_OK)
+        return status;
+    cp_study_risk *risk = &data->risk[data->risk_count++];
+    char **const text[] = {&risk->name, &risk->level, &risk->source, &risk->note};
+    for (size_t k = 0; k < 4 && status == CP_OK; k++)
+        status = copy_text(row->cell[k].text, text[k], error);
+    if (status != CP_OK)
+        return status;
+    risk->predictor = CP_PREDICTOR_COUNT;
+    for (int k = 0; k < CP_PREDICTOR_COUNT; k++)
+        if (strcmp(row->cell[4].text, PREDICTOR_COLUMN[k]) == 0)
+            risk->predictor = (cp_predictor)k;
+    double coefficient[2] = {row->cell[7].real, row->cell[8].real};
+    if (risk->predictor == CP_PREDICTOR_COUNT)
+        status = cp_fail(error, CP_BAD_INPUT, "unknown predictor '%s'", row->cell[4].text);
+    else
+        status = cp_risk_function_create(row->cell[6].text, row->cell[5].text, coefficient, 2,
+                                         &risk->function, error);
+    return status == CP_OK
+               ? CP_OK
+               : cp_error_prefix(error, "table risk_function, %s %s: ", risk->name, risk->level);
+}
+
+static size_t index_of(const char *text, const char *const *of, size_t count)
+{
+    size_t k = 0;
+    while (k < count && strcmp(text, of[k]) != 0)
+        k++;
+    return k;
+}
+
+static cp_status read_pair(void *context, const cp_row *row, cp_error *error)
+{
+    static const char *const OUTCOME[] = {
+#define CP_OUTCOME_TEXT(name, text) text,
+        CP_OUTCOMES(CP_OUTCOME_TEXT)
+#undef CP_OUTCOME_TEXT
+    };
+    static const char *const REASON[] = {
+#define CP_REASON_TEXT(name, text) text,
+        CP_NULL_STATUSES(CP_REASON_TEXT)
+#undef CP_REASON_TEXT
+    };
+    reader *r = context;
+    cp_study_data *data = r->data;
+    cp_status status =
+        grow((void **)&data->pair, data->pair_count, &r->room, sizeof *data->pair, error);
+    if (status != CP_OK)
+        return status;
+    cp_study_pair *pair = &data->pair[data->pair_count++];
+    *pair = (cp_study_pair){
+        .crash = (size_t)row->cell[0].integer,
+        .variant = (size_t)row->cell[1].integer,
+        .outcome =
+            (cp_outcome)index_of(row->cell[2].text, OUTCOME, sizeof OUTCOME / sizeof *OUTCOME),
+        .outcome_olc =
+            (cp_outcome)index_of(row->cell[3].text, OUTCOME, sizeof OUTCOME / sizeof *OUTCOME),
+        .reason = index_of(row->cell[4].text, REASON, sizeof REASON / sizeof *REASON),
+        .new_crashes = row->cell[5].real,
+        .olc_g = {row->cell[6].real, row->cell[7].real},
+        .closing_speed_m_s = {row->cell[8].real, row->cell[9].real},
+        .treated_inside = {row->cell[10].integer != 0, row->cell[11].integer != 0},
+    };
+    for (int role = 0; role < 2; role++)
+        for (int k = 0; k < CP_PREDICTOR_COUNT; k++)
+            pair->predictor[role][k] = row->cell[12 + CP_PREDICTOR_COUNT * role + k].real;
     return CP_OK;
 }
 
@@ -166,8 +256,10 @@ static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
     " AS frontal, row_number() OVER (ORDER BY r.place, x.number) - 1 AS place"                     \
     " FROM crash AS x JOIN r ON r.id = x.replication_id JOIN t USING (crash_type)),"               \
     " o AS (SELECT validity, row_number() OVER (ORDER BY validity <> 'inside', validity) - 1"      \
-    " AS place FROM (SELECT validity FROM crash_vehicle WHERE frontal = 1"                         \
-    " UNION SELECT 'inside')) "
+    " AS place FROM (SELECT validity FROM crash_vehicle UNION SELECT 'inside')) "
+
+#define PREDICTORS_OF(w, closing)                                                                  \
+    w ".delta_v_m_s, " w ".delta_v_x_m_s, " closing ", " w ".max_50ms_g, " w ".asi_1"
 
 static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error)
 {
@@ -182,14 +274,38 @@ static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error
          read_replication},
         {PLACES "SELECT crash_type FROM t ORDER BY place", read_crash_type},
         {PLACES "SELECT validity FROM o ORDER BY place", read_validity},
-        {PLACES "SELECT replication, type, frontal, validity = 'inside' FROM c ORDER BY place",
+        {PLACES "SELECT replication, type, frontal, validity = 'inside', id, time_s, x_m, y_m"
+                " FROM c ORDER BY place",
          read_crash},
-        {PLACES "SELECT c.place, w.role, CASE w.olc_status WHEN 'value' THEN 0 WHEN "
-                "'simulation_failed' THEN 2 ELSE 1 END, w.olc_g, w.delta_v_m_s,"
-                " c.closing_speed_m_s, c.lateral_offset_m, c.angle_rad, o.place"
-                " FROM crash_vehicle AS w JOIN c ON c.id = w.crash_id"
-                " JOIN o ON o.validity = w.validity WHERE w.frontal = 1 ORDER BY c.place, w.role",
+        {PLACES
+         "SELECT c.place, w.role, CASE w.olc_status WHEN 'value' THEN 0 WHEN "
+         "'simulation_failed' THEN 2 ELSE 1 END, w.olc_g, w.delta_v_m_s,"
+         " c.closing_speed_m_s, c.lateral_offset_m, c.angle_rad, o.place, "
+         "w.frontal, " PREDICTORS_OF(
+             "w",
+             "c.closing_speed_m_s") " FROM crash_vehicle AS w JOIN c ON c.id = w.crash_id"
+                                    " JOIN o ON o.validity = w.validity ORDER BY c.place, w.role",
          read_vehicle},
+        {PLACES
+         "SELECT c.place, v.place, p.outcome, p.outcome_olc, coalesce(p.reason,"
+         " 'reproduced'), p.new_crashes, p.baseline_olc_g, p.treated_olc_g,"
+         " p.baseline_closing_speed_m_s, CASE p.outcome WHEN 'avoided' THEN 0.0 ELSE"
+         " p.treated_closing_speed_m_s END, a.validity = 'inside', b.validity = "
+         "'inside', " PREDICTORS_OF("a", "p.treated_closing_speed_m_s") ", " PREDICTORS_OF(
+             "b", "p.treated_closing_speed_m_s") " FROM counterfactual_pair AS p JOIN c ON c.id = "
+                                                 "p.crash_id"
+                                                 " JOIN v ON v.id = p.variant_id AND v.sweep = ''"
+                                                 " LEFT JOIN counterfactual_vehicle AS a ON "
+                                                 "a.crash_id = p.crash_id"
+                                                 " AND a.variant_id = p.variant_id AND a.role = 'a'"
+                                                 " LEFT JOIN counterfactual_vehicle AS b ON "
+                                                 "b.crash_id = p.crash_id"
+                                                 " AND b.variant_id = p.variant_id AND b.role = 'b'"
+                                                 " ORDER BY c.place, v.place",
+         read_pair},
+        {"SELECT name, level, source, note, predictor, unit, form, coefficients ->> 0,"
+         " coefficients ->> 1 FROM risk_function ORDER BY name, level",
+         read_risk},
     };
     for (size_t k = 0; k < sizeof queries / sizeof *queries; k++) {
         reader r = {.data = data};
@@ -237,6 +353,7 @@ static cp_status read_about(cp_store *store, cp_study_data *data, cp_error *erro
         return cp_fail(error, CP_BAD_INPUT, "the database holds no study yet");
     const char *design = json_string_value(json_object_get(study, "design"));
     data->paired = design && strcmp(design, "paired_seeds") == 0;
+    data->counterfactual = design && strcmp(design, "counterfactual") == 0;
     data->seed = (uint64_t)json_integer_value(json_object_get(study, "seed"));
     return copy_text(json_string_value(json_object_get(study, "name")), &data->name, error);
 }
@@ -271,6 +388,14 @@ void cp_study_data_destroy(cp_study_data *data)
         free(data->crash_type[k]);
     for (size_t k = 0; k < data->validity_count; k++)
         free(data->validity[k]);
+    for (size_t k = 0; k < data->risk_count; k++) {
+        free(data->risk[k].name);
+        free(data->risk[k].level);
+        free(data->risk[k].source);
+        free(data->risk[k].note);
+    }
+    free(data->risk);
+    free(data->pair);
     free(data->scenario);
     free(data->variant);
     free(data->replication);
@@ -304,4 +429,112 @@ cp_status cp_study_data_variant(const cp_study_data *data, const char *name, siz
                        names);
     return cp_fail(error, CP_BAD_INPUT,
                    "no variant is marked as the baseline; name one with --baseline: %s", names);
+}
+
+/* Vehicles a query names, by crash and role. */
+typedef struct chooser {
+    const cp_study_data *data;
+    cp_study_choice *choice;
+    bool grouped;
+} chooser;
+
+// Groups come in order, so a new value is a new group.
+static cp_status choose_group(chooser *c, size_t vehicle, const cp_cell *cell, cp_error *error)
+{
+    cp_study_choice *choice = c->choice;
+    char number[64];
+    const char *text = cell->text;
+    if (cell->type == CP_CELL_INTEGER)
+        snprintf(number, sizeof number, "%lld", (long long)cell->integer);
+    else
+        snprintf(number, sizeof number, "%.9g", cell->real);
+    if (cell->type == CP_CELL_INTEGER || cell->type == CP_CELL_REAL)
+        text = number;
+    else if (cell->type == CP_CELL_NULL)
+        text = "NULL";
+    if (choice->value_count == 0 || strcmp(choice->value[choice->value_count - 1], text) != 0) {
+        if (choice->value_count == CP_CHOICE_VALUES_MAX)
+            return cp_fail(error, CP_BAD_INPUT,
+                           "the column has more than %d values; choose one of few, or fewer "
+                           "vehicles",
+                           CP_CHOICE_VALUES_MAX);
+        cp_status status = copy_text(text, &choice->value[choice->value_count], error);
+        if (status != CP_OK)
+            return status;
+        choice->value_count++;
+    }
+    choice->group[vehicle] = choice->value_count - 1;
+    return CP_OK;
+}
+
+static cp_status choose_vehicle(void *context, const cp_row *row, cp_error *error)
+{
+    chooser *c = context;
+    size_t vehicle = 2 * (size_t)row->cell[0].integer + (row->cell[1].text[0] == 'b');
+    if (vehicle >= c->data->vehicle_count ||
+        c->data->vehicle[vehicle].crash != (size_t)row->cell[0].integer)
+        return cp_fail(error, CP_STORE_FAILED, "the database changed while it was read");
+    c->choice->chosen[vehicle] = 1;
+    return c->grouped ? choose_group(c, vehicle, &row->cell[2], error) : CP_OK;
+}
+
+static bool is_name(const char *text)
+{
+    for (const char *c = text; *c; c++)
+        if (!(*c == '_' || (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') ||
+              (c > text && *c >= '0' && *c <= '9')))
+            return false;
+    return *text != '\0';
+}
+
+cp_status cp_study_choose(cp_store *store, const cp_study_data *data, const char *where,
+                          const char *by, cp_study_choice *choice, cp_error *error)
+{
+    *choice = (cp_study_choice){0};
+    if (by && !is_name(by))
+        return cp_fail(error, CP_BAD_INPUT,
+                       "--by must be one column of the view crash_vehicle_list, found '%s'", by);
+    char *sql = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&sql, &size);
+    choice->chosen = calloc(data->vehicle_count + 1, sizeof *choice->chosen);
+    choice->group = calloc(data->vehicle_count + 1, sizeof *choice->group);
+    choice->value = calloc(CP_CHOICE_VALUES_MAX, sizeof *choice->value);
+    if (!out || !choice->chosen || !choice->group || !choice->value) {
+        if (out)
+            fclose(out);
+        free(sql);
+        cp_study_choice_destroy(choice);
+        return cp_fail_memory(error, "a choice of vehicles");
+    }
+    for (size_t k = 0; k < data->vehicle_count; k++)
+        choice->group[k] = SIZE_MAX;
+
+    // The condition stands on a line of its own, so that a comment in it ends there.
+    fprintf(out,
+            "%sSELECT c.place, x.role, x.by_value FROM (SELECT crash_id, role, %s AS by_value"
+            " FROM crash_vehicle_list WHERE (%s\n)) AS x JOIN c ON c.id = x.crash_id"
+            " ORDER BY x.by_value, c.place, x.role",
+            PLACES, by ? by : "NULL", where ? where : "1");
+    cp_status status = CP_OK;
+    if (fclose(out) != 0)
+        status = cp_fail_memory(error, "a choice of vehicles");
+    chooser c = {data, choice, by != NULL};
+    cp_query_handler handler = {.row = choose_vehicle, .context = &c};
+    if (status == CP_OK)
+        status = cp_query(store, sql, NULL, 0, &handler, error);
+    free(sql);
+    if (status != CP_OK)
+        cp_study_choice_destroy(choice);
+    return status == CP_BAD_INPUT ? cp_error_prefix(error, "--where or --by: ") : status;
+}
+
+void cp_study_choice_destroy(cp_study_choice *choice)
+{
+    for (size_t k = 0; k < choice->value_count; k++)
+        free(choice->value[k]);
+    free(choice->value);
+    free(choice->chosen);
+    free(choice->group);
+    *choice = (cp_study_choice){0};
 }

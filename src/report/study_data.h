@@ -2,6 +2,8 @@
 #ifndef REPORT_STUDY_DATA_H
 #define REPORT_STUDY_DATA_H
 
+#include "stats/risk_function.h"
+#include "store/counterfactual_rows.h"
 #include "store/store.h"
 
 #include <jansson.h>
@@ -11,7 +13,8 @@
 #include <stdint.h>
 
 /* What comparisons and reports need of a study's database, read once: exposure of every finished
- * replication, and its frontally struck vehicles. Rows refer to each other by index. */
+ * replication, its crashes and their vehicles, counterfactual pairs, risk functions. Rows refer to
+ * each other by index. */
 
 typedef struct cp_study_scenario {
     char *name;
@@ -35,11 +38,40 @@ typedef struct cp_study_replication {
 } cp_study_replication;
 
 typedef struct cp_study_crash {
+    int64_t id; /* of its row */
     size_t replication;
     size_t crash_type;
     bool frontal;
     bool inside; /* validity of both vehicles */
+    double time_s;
+    double x_m; /* first contact, world */
+    double y_m;
 } cp_study_crash;
+
+/* What risk functions may depend on: X(name, column). */
+#define CP_PREDICTORS(X)                                                                           \
+    X(CP_PREDICTOR_DELTA_V, "delta_v_m_s")                                                         \
+    X(CP_PREDICTOR_DELTA_V_X, "delta_v_x_m_s")                                                     \
+    X(CP_PREDICTOR_CLOSING_SPEED, "closing_speed_m_s")                                             \
+    X(CP_PREDICTOR_MAX_50MS, "max_50ms_g")                                                         \
+    X(CP_PREDICTOR_ASI, "asi_1")
+
+typedef enum cp_predictor {
+#define CP_PREDICTOR_NAME(name, column) name,
+    CP_PREDICTORS(CP_PREDICTOR_NAME)
+#undef CP_PREDICTOR_NAME
+        CP_PREDICTOR_COUNT
+} cp_predictor;
+
+/* A row of the table risk_function. */
+typedef struct cp_study_risk {
+    char *name;
+    char *level;
+    char *source;
+    char *note;
+    cp_predictor predictor;
+    cp_risk_function function;
+} cp_study_risk;
 
 /* What is known of a vehicle's OLC; the page of a report uses the same numbers. */
 typedef enum cp_olc_known {
@@ -48,23 +80,41 @@ typedef enum cp_olc_known {
     CP_OLC_FAILED    /* its crash could not be simulated */
 } cp_olc_known;
 
-/* A frontally struck vehicle. */
+/* A vehicle of a crash. Only frontally struck ones have an OLC. */
 typedef struct cp_study_vehicle {
     size_t crash;
     char role; /* 'a' or 'b' */
+    bool frontal;
     cp_olc_known olc;
     double olc_g;       /* NAN without a value */
     double delta_v_m_s; /* NAN when unknown */
     double closing_speed_m_s;
     double lateral_offset_m;
     double angle_rad;
-    size_t validity; /* index into validity texts; 0 is "inside" */
+    size_t validity;                      /* index into validity texts; 0 is "inside" */
+    double predictor[CP_PREDICTOR_COUNT]; /* NAN when unknown */
 } cp_study_vehicle;
+
+/* A baseline's crash under a treatment, in the counterfactual design. */
+typedef struct cp_study_pair {
+    size_t crash;
+    size_t variant;
+    cp_outcome outcome;
+    cp_outcome outcome_olc;
+    size_t reason; /* cp_null_status; CP_NULL_REPRODUCED unless invalid */
+    double new_crashes;
+    double olc_g[2]; /* baseline, treated: the larger of the frontally struck vehicles, 0 when left-
+                        censored or avoided; NAN without one */
+    double closing_speed_m_s[2];             /* treated: 0 when avoided, NAN when invalid */
+    double predictor[2][CP_PREDICTOR_COUNT]; /* of the treated crash's vehicles; NAN without */
+    bool treated_inside[2];                  /* these vehicles inside validity */
+} cp_study_pair;
 
 typedef struct cp_study_data {
     json_t *about; /* the study's row, program versions, vehicle models: as stored, for reports */
     char *name;
-    bool paired; /* replications with the same number ran the same seed in every variant */
+    bool counterfactual; /* treatments have pairs, not replications */
+    bool paired;         /* replications with the same number ran the same seed in every variant */
     uint64_t seed;
     size_t unfinished; /* replications planned, running or failed */
 
@@ -79,7 +129,12 @@ typedef struct cp_study_data {
     size_t crash_count;
     cp_study_crash *crash;
     size_t vehicle_count;
-    cp_study_vehicle *vehicle;
+    cp_study_vehicle *vehicle; /* two a crash, by crash and role */
+    size_t frontal_vehicle_count;
+    size_t pair_count;
+    cp_study_pair *pair; /* by crash and variant */
+    size_t risk_count;
+    cp_study_risk *risk; /* by name and level */
     size_t validity_count;
     char **validity; /* [0] "inside", then the lists that occur */
 } cp_study_data;
@@ -93,5 +148,23 @@ void cp_study_data_destroy(cp_study_data *data);
  * the names there are. */
 CP_MUST_CHECK cp_status cp_study_data_variant(const cp_study_data *data, const char *name,
                                               size_t *variant, cp_error *error);
+
+/* Which vehicles a condition chooses: chosen[k] is 1 for vehicle k, else 0. where is SQL over a row
+ * of the view crash_vehicle_list (NULL: all). With by, a column of that view, group[k] is the index
+ * of the vehicle's value among values (texts, in order; the caller frees with
+ * cp_study_choice_destroy). Errors: CP_BAD_INPUT for SQL that is wrong. */
+typedef struct cp_study_choice {
+    unsigned char *chosen;
+    size_t *group; /* SIZE_MAX: not chosen; NULL without by */
+    size_t value_count;
+    char **value;
+} cp_study_choice;
+
+#define CP_CHOICE_VALUES_MAX 100 /* groups of by */
+
+CP_MUST_CHECK cp_status cp_study_choose(cp_store *store, const cp_study_data *data,
+                                        const char *where, const char *by, cp_study_choice *choice,
+                                        cp_error *error);
+void cp_study_choice_destroy(cp_study_choice *choice);
 
 #endif

@@ -3,6 +3,8 @@
 
 #include "report/answer.h"
 #include "report/comparison_json.h"
+#include "report/grouping.h"
+#include "report/quantity.h"
 #include "report/slice_sample.h"
 #include "store/query.h"
 
@@ -16,7 +18,7 @@
 
 #include "report/small_study.h"
 
-static const cp_slice EVERYTHING = {CP_SLICE_ALL, CP_SLICE_ALL};
+static const cp_slice EVERYTHING = {CP_SLICE_ALL, CP_SLICE_ALL, NULL};
 
 typedef struct fixture {
     cp_store *store;
@@ -72,12 +74,14 @@ static void figures_agree_with_the_views(void **state)
         assert_int_equal(v->inside, asked(f, "inside_validity", "olc_by_variant", name));
         assert_int_equal(v->simulation_failed,
                          asked(f, "simulation_failed", "olc_by_variant", name));
-        assert_int_equal(v->olc_g[CP_SCOPE_ALL].censored,
+        assert_int_equal(v->description[CP_QUANTITY_OLC][CP_SCOPE_ALL].censored,
                          asked(f, "censored", "olc_by_variant", name));
-        assert_int_equal(v->olc_g[CP_SCOPE_ALL].count, v->frontal_vehicles - v->simulation_failed);
+        assert_int_equal(v->description[CP_QUANTITY_OLC][CP_SCOPE_ALL].count,
+                         v->frontal_vehicles - v->simulation_failed);
         double median = asked(f, "olc_median_g", "olc_by_variant", name);
         double rate = asked(f, "frontal_crashes_per_million_km", "crash_rate_by_variant", name);
-        assert_true(fabs(v->olc_g[CP_SCOPE_ALL].median.value - median) < 1e-9);
+        assert_true(fabs(v->description[CP_QUANTITY_OLC][CP_SCOPE_ALL].median.value - median) <
+                    1e-9);
         assert_true(fabs(v->rate - rate) < 1e-6 * rate);
         assert_true(v->rate_garwood.low < rate && rate < v->rate_garwood.high);
     }
@@ -91,11 +95,11 @@ static void few_replications_give_p_and_no_interval(void **state)
     assert_int_equal(f->comparison.contrast_count, 1);
     assert_int_equal(c->replications[0], 16);
     assert_int_equal(c->rate_ratio_bootstrap.status, CP_INTERVAL_TOO_FEW_REPLICATIONS);
-    assert_int_equal(c->olc_g[CP_SCOPE_ALL].median_interval.status,
+    assert_int_equal(c->severity[CP_QUANTITY_OLC][CP_SCOPE_ALL].median_interval.status,
                      CP_INTERVAL_TOO_FEW_REPLICATIONS);
     assert_true(c->rate_p > 0.0 && c->rate_p < 0.05);
     assert_true(c->rate_ratio > 0.4 && c->rate_ratio < 0.6);
-    assert_true(c->olc_g[CP_SCOPE_ALL].cliffs_delta < 0.0);
+    assert_true(c->severity[CP_QUANTITY_OLC][CP_SCOPE_ALL].cliffs_delta < 0.0);
 }
 
 // Slices of a filter cover everything once; a slice of rates keeps the whole exposure.
@@ -108,7 +112,8 @@ static void slices_add_up(void **state)
     for (size_t s = 0; s < f->data.scenario_count; s++) {
         cp_comparison part;
         assert_int_equal(
-            cp_compare(&f->data, 0, (cp_slice){s, CP_SLICE_ALL}, &options, &part, &error), CP_OK);
+            cp_compare(&f->data, 0, (cp_slice){s, CP_SLICE_ALL, NULL}, &options, &part, &error),
+            CP_OK);
         by_scenario += part.variant[0].frontal_crashes;
         assert_int_equal(part.variant[0].replications, 8);
         cp_comparison_destroy(&part);
@@ -116,7 +121,8 @@ static void slices_add_up(void **state)
     for (size_t t = 0; t < f->data.crash_type_count; t++) {
         cp_comparison part;
         assert_int_equal(
-            cp_compare(&f->data, 0, (cp_slice){CP_SLICE_ALL, t}, &options, &part, &error), CP_OK);
+            cp_compare(&f->data, 0, (cp_slice){CP_SLICE_ALL, t, NULL}, &options, &part, &error),
+            CP_OK);
         by_type += part.variant[0].frontal_crashes;
         assert_true(part.variant[0].vehicle_km == f->comparison.variant[0].vehicle_km);
         cp_comparison_destroy(&part);
@@ -185,6 +191,93 @@ static void pairs_are_the_seeds_both_finished(void **state)
     cp_replication_set_destroy(&b);
 }
 
+// Malliaris MAIS2+ in SQL, over both drivers of every frontal crash; the benefit from the rates.
+static void injuries_agree_with_sql(void **state)
+{
+    fixture *f = *state;
+    size_t k = 0;
+    while (strcmp(f->data.risk[k].name, "Malliaris") != 0 ||
+           strcmp(f->data.risk[k].level, "MAIS2+") != 0)
+        k++;
+    double rate[2];
+    for (size_t v = 0; v < 2; v++) {
+        char sql[512];
+        double expected = NAN, inside = NAN;
+        cp_error error = {0};
+        for (int scope = 0; scope < 2; scope++) {
+            snprintf(sql, sizeof sql,
+                     "SELECT sum(1.0 / (1.0 + exp(3.761 - 0.136 * w.delta_v_m_s / 0.44704)))"
+                     " FROM crash_vehicle AS w JOIN variant AS v ON v.id = w.variant_id"
+                     " WHERE v.name = '%s' AND w.crash_type LIKE 'front-%%' %s",
+                     f->data.variant[v].name, scope ? "AND w.validity = 'inside'" : "");
+            if (cp_query_number(f->store, sql, scope ? &inside : &expected, &error) != CP_OK)
+                fail_msg("%s", error.text);
+        }
+        const cp_variant_figures *figures = &f->comparison.variant[v];
+        assert_true(fabs(figures->injury[CP_SCOPE_ALL][k].expected - expected) < 1e-9 * expected);
+        assert_true(fabs(figures->injury[CP_SCOPE_INSIDE][k].expected - inside) < 1e-9 * inside);
+        rate[v] = figures->injury[CP_SCOPE_ALL][k].rate;
+        assert_true(fabs(rate[v] - 1e6 * expected / figures->vehicle_km) < 1e-6 * rate[v]);
+    }
+    const cp_benefit_figures *benefit = &f->comparison.contrast[0].benefit[CP_SCOPE_ALL][k];
+    assert_true(fabs(benefit->benefit_1 - (1.0 - rate[1] / rate[0])) < 1e-9);
+}
+
+// --where and --by against SQL; their groups add up to the whole.
+static void groups_agree_with_sql(void **state)
+{
+    fixture *f = *state;
+    cp_error error = {0};
+    cp_grouping g;
+    cp_comparison_options options = {.repetitions = 10, .permutations = 0};
+    const char *where = "closing_speed_m_s > 12 AND validity <> 'angle' -- a comment";
+    assert_int_equal(
+        cp_grouping_create(f->store, &f->data, "left_turn", "validity", where, &g, &error), CP_OK);
+    assert_true(g.count >= 2);
+    size_t vehicles = 0;
+    double wanted = 0.0;
+    for (size_t k = 0; k < g.count; k++) {
+        cp_comparison part;
+        assert_int_equal(cp_compare(&f->data, 0, g.slice[k], &options, &part, &error), CP_OK);
+        vehicles += part.variant[0].frontal_vehicles;
+        assert_int_equal(part.variant[0].replications, 8);
+        cp_comparison_destroy(&part);
+    }
+    if (cp_query_number(f->store,
+                        "SELECT count(*) FROM frontal_vehicle WHERE closing_speed_m_s > 12 AND"
+                        " validity <> 'angle' AND variant = 'baseline' AND scenario = 'left_turn'",
+                        &wanted, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(vehicles, (size_t)wanted);
+    assert_true(wanted > 0.0);
+    cp_grouping_destroy(&g);
+    assert_int_equal(cp_grouping_create(f->store, &f->data, "right_turn", NULL, NULL, &g, &error),
+                     CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "left_turn, head_on_overtaking"));
+    assert_int_equal(cp_grouping_create(f->store, &f->data, NULL, "crash_id", NULL, &g, &error),
+                     CP_BAD_INPUT);
+}
+
+// Every variant has the same names in the same order, and no name twice in a scope but for its
+// second interval.
+static void quantities_have_names_of_their_own(void **state)
+{
+    fixture *f = *state;
+    cp_quantities list[2] = {{0}, {0}};
+    for (size_t v = 0; v < 2; v++)
+        cp_quantities_of_variant(&f->data, &f->comparison.variant[v], &list[v]);
+    assert_false(list[0].failed);
+    assert_int_equal(list[0].count, list[1].count);
+    for (size_t k = 0; k < list[0].count; k++) {
+        assert_string_equal(list[0].row[k].name, list[1].row[k].name);
+        for (size_t j = 0; j < k; j++)
+            if (list[0].row[j].scope == list[0].row[k].scope && !list[0].row[k].kind)
+                assert_string_not_equal(list[0].row[j].name, list[0].row[k].name);
+    }
+    cp_quantities_destroy(&list[0]);
+    cp_quantities_destroy(&list[1]);
+}
+
 static void unknown_baseline_names_the_variants(void **state)
 {
     fixture *f = *state;
@@ -205,6 +298,9 @@ int main(void)
         cmocka_unit_test(same_database_same_json),
         cmocka_unit_test(answer_names_crashes_validity_and_assumptions),
         cmocka_unit_test(pairs_are_the_seeds_both_finished),
+        cmocka_unit_test(injuries_agree_with_sql),
+        cmocka_unit_test(groups_agree_with_sql),
+        cmocka_unit_test(quantities_have_names_of_their_own),
         cmocka_unit_test(unknown_baseline_names_the_variants),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,1 +1,1 @@
-"$crashpulse" compare "$db"
+"$crashpulse" compare "$db" --no-store

@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/counterfactual.h"
+
+#include "report/slice_sample.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* The pairs of one treatment in a slice. */
+typedef struct pairs {
+    const cp_study_data *data;
+    const cp_comparison *comparison;
+    const cp_replication_set *set; /* of the baseline */
+    cp_resampling resampling;
+    size_t permutations;
+    size_t count;
+    const cp_study_pair **pair;
+    size_t *cluster; /* of each pair */
+} pairs;
+
+static bool valid(const cp_study_pair *pair)
+{
+    return pair->outcome != CP_OUTCOME_INVALID;
+}
+
+// The two crash again with each other: what severity conditional on crashing is about.
+static bool crashes_again(const cp_study_pair *pair)
+{
+    return pair->outcome == CP_OUTCOME_MITIGATED || pair->outcome == CP_OUTCOME_AGGRAVATED ||
+           pair->outcome == CP_OUTCOME_UNCHANGED;
+}
+
+static size_t cluster_of(const cp_replication_set *set, size_t replication)
+{
+    for (size_t k = 0; k < set->count; k++)
+        if (set->replication[k] == replication)
+            return k;
+    return SIZE_MAX;
+}
+
+static void gather(pairs *p, size_t variant)
+{
+    p->count = 0;
+    size_t last = SIZE_MAX, cluster = SIZE_MAX;
+    for (size_t k = 0; k < p->data->pair_count; k++) {
+        const cp_study_pair *pair = &p->data->pair[k];
+        const cp_study_crash *crash = &p->data->crash[pair->crash];
+        if (pair->variant != variant ||
+            !cp_slice_has_frontal_crash(p->data, p->comparison->slice, crash))
+            continue;
+        if (crash->replication != last) { // pairs come replication by replication
+            last = crash->replication;
+            cluster = cluster_of(p->set, last);
+        }
+        if (cluster == SIZE_MAX)
+            continue;
+        p->pair[p->count] = pair;
+        p->cluster[p->count++] = cluster;
+    }
+}
+
+static void count_outcomes(const pairs *p, cp_counterfactual_figures *figures)
+{
+    figures->crashes = p->count;
+    for (size_t k = 0; k < p->count; k++) {
+        const cp_study_pair *pair = p->pair[k];
+        figures->outcome[pair->outcome]++;
+        figures->outcome_olc[pair->outcome_olc]++;
+        figures->valid += valid(pair);
+        if (valid(pair))
+            figures->new_crashes += pair->new_crashes;
+        else
+            figures->reason[pair->reason]++;
+    }
+}
+
+// Share of an outcome among the valid pairs is a rate: of these pairs per valid pair.
+static cp_status figure_shares(const pairs *p, cp_counterfactual_figures *figures, cp_error *error)
+{
+    double *events = calloc(p->set->count + 1, sizeof *events);
+    double *pairs_of = calloc(p->set->count + 1, sizeof *pairs_of);
+    cp_status status = CP_OK;
+    if (!events || !pairs_of)
+        status = cp_fail_memory(error, "outcomes");
+    for (int outcome = CP_OUTCOME_CHANGED_OPPONENT; outcome < CP_OUTCOME_NO_OLC && status == CP_OK;
+         outcome++) {
+        for (size_t c = 0; c < p->set->count; c++)
+            events[c] = pairs_of[c] = 0.0;
+        for (size_t k = 0; k < p->count; k++) {
+            events[p->cluster[k]] += (int)p->pair[k]->outcome == outcome;
+            pairs_of[p->cluster[k]] += valid(p->pair[k]);
+        }
+        cp_exposure exposure = {p->set->count, events, pairs_of};
+        status = cp_rate_bootstrap(&exposure, p->set->stratum, p->data->seed,
+                                   &figures->share[outcome], error);
+    }
+    free(events);
+    free(pairs_of);
+    return status;
+}
+
+// Treated minus baseline over the valid pairs, or over those that crash again.
+static cp_status figure_severity(const pairs *p, bool olc, int which, cp_paired *paired,
+                                 cp_error *error)
+{
+    double *difference = calloc(p->count + 1, sizeof *difference);
+    size_t *cluster = calloc(p->count + 1, sizeof *cluster);
+    cp_sample sample = {0};
+    cp_status status = CP_OK;
+    size_t count = 0;
+    if (!difference || !cluster) {
+        status = cp_fail_memory(error, "paired severity");
+        goto done;
+    }
+    for (size_t k = 0; k < p->count; k++) {
+        const cp_study_pair *pair = p->pair[k];
+        const double *severity = olc ? pair->olc_g : pair->closing_speed_m_s;
+        double change = severity[1] - severity[0];
+        if (isnan(change) || !(which == CP_PAIRED_ALL ? valid(pair) : crashes_again(pair)))
+            continue;
+        difference[count] = change;
+        cluster[count++] = p->cluster[k];
+    }
+    status = cp_sample_create(difference, cluster, count, p->set->count, &sample, error);
+    if (status == CP_OK)
+        status = cp_paired_compare(&sample, &p->resampling, p->permutations, paired, error);
+
+done:
+    cp_sample_destroy(&sample);
+    free(difference);
+    free(cluster);
+    return status;
+}
+
+// Expected injured drivers of the baseline's crashes and of what became of them, by replication.
+// A pair without a known probability on either side is left out of both.
+static void sum_injuries(const pairs *p, const cp_study_risk *risk, double *baseline,
+                         double *treated)
+{
+    for (size_t c = 0; c < p->set->count; c++)
+        baseline[c] = treated[c] = 0.0;
+    for (size_t k = 0; k < p->count; k++) {
+        const cp_study_pair *pair = p->pair[k];
+        if (!valid(pair))
+            continue;
+        double before = 0.0, after = 0.0;
+        for (size_t role = 0; role < 2; role++) {
+            const cp_study_vehicle *vehicle = &p->data->vehicle[2 * pair->crash + role];
+            before += cp_risk_probability(&risk->function, vehicle->predictor[risk->predictor]);
+            if (pair->outcome != CP_OUTCOME_AVOIDED)
+                after +=
+                    cp_risk_probability(&risk->function, pair->predictor[role][risk->predictor]);
+        }
+        if (isnan(before) || isnan(after))
+            continue;
+        baseline[p->cluster[k]] += before;
+        treated[p->cluster[k]] += after;
+    }
+}
+
+static cp_status figure_benefit(const pairs *p, cp_counterfactual_figures *figures, cp_error *error)
+{
+    double *baseline = calloc(p->set->count + 1, sizeof *baseline);
+    double *treated = calloc(p->set->count + 1, sizeof *treated);
+    cp_status status = CP_OK;
+    if (!baseline || !treated)
+        status = cp_fail_memory(error, "expected injuries");
+    for (size_t k = 0; k < p->data->risk_count && status == CP_OK; k++) {
+        cp_benefit_figures *benefit = &figures->benefit[k];
+        sum_injuries(p, &p->data->risk[k], baseline, treated);
+        cp_exposure ratio = {p->set->count, treated, baseline};
+        for (size_t c = 0; c < p->set->count; c++) {
+            benefit->baseline += baseline[c];
+            benefit->treatment += treated[c];
+        }
+        benefit->benefit_1 = 1.0 - cp_rate(&ratio);
+        cp_interval interval;
+        status = cp_rate_bootstrap(&ratio, p->set->stratum, p->data->seed, &interval, error);
+        benefit->interval = (cp_interval){interval.status, 1.0 - interval.high, 1.0 - interval.low};
+    }
+    free(baseline);
+    free(treated);
+    return status;
+}
+
+static cp_status figure_treatment(pairs *p, cp_counterfactual_figures *figures, cp_error *error)
+{
+    gather(p, figures->variant);
+    count_outcomes(p, figures);
+    figures->benefit = calloc(p->data->risk_count + 1, sizeof *figures->benefit);
+    if (!figures->benefit)
+        return cp_fail_memory(error, "expected injuries");
+    cp_status status = figure_shares(p, figures, error);
+    for (int which = 0; which < CP_PAIRED_COUNT && status == CP_OK; which++) {
+        status = figure_severity(p, true, which, &figures->olc_g[which], error);
+        if (status == CP_OK)
+            status = figure_severity(p, false, which, &figures->closing_speed_m_s[which], error);
+    }
+    return status == CP_OK ? figure_benefit(p, figures, error) : status;
+}
+
+static cp_status adjust(cp_comparison *comparison, cp_error *error)
+{
+    double *p = calloc(comparison->counterfactual_count + 1, sizeof *p);
+    if (!p)
+        return cp_fail_memory(error, "Holm's adjustment");
+    cp_status status = CP_OK;
+    for (int which = 0; which < CP_PAIRED_COUNT && status == CP_OK; which++) {
+        for (size_t k = 0; k < comparison->counterfactual_count; k++)
+            p[k] = comparison->counterfactual[k].olc_g[which].signed_rank.p;
+        status = cp_holm_adjust(p, comparison->counterfactual_count, error);
+        for (size_t k = 0; k < comparison->counterfactual_count; k++)
+            comparison->counterfactual[k].p_holm[which] = p[k];
+    }
+    free(p);
+    return status;
+}
+
+cp_status cp_compare_counterfactual(const cp_study_data *data, const cp_comparison_options *options,
+                                    cp_comparison *comparison, cp_error *error)
+{
+    cp_replication_set set;
+    cp_status status =
+        cp_replication_set_create(data, comparison->slice, comparison->baseline, &set, error);
+    if (status != CP_OK)
+        return status;
+    pairs p = {.data = data, .comparison = comparison, .set = &set};
+    p.permutations = options->permutations;
+    p.resampling = cp_resampling_default();
+    p.resampling.repetitions = options->repetitions;
+    p.resampling.seed = data->seed;
+    p.resampling.cluster_count[0] = set.count;
+    p.resampling.stratum[0] = set.stratum;
+    p.pair = calloc(data->pair_count + 1, sizeof *p.pair);
+    p.cluster = calloc(data->pair_count + 1, sizeof *p.cluster);
+    comparison->counterfactual =
+        calloc(data->variant_count + 1, sizeof *comparison->counterfactual);
+    if (!p.pair || !p.cluster || !comparison->counterfactual)
+        status = cp_fail_memory(error, "counterfactual pairs");
+    for (size_t v = 0; v < data->variant_count && status == CP_OK; v++) {
+        if (v == comparison->baseline)
+            continue;
+        cp_counterfactual_figures *figures =
+            &comparison->counterfactual[comparison->counterfactual_count++];
+        figures->variant = v;
+        status = figure_treatment(&p, figures, error);
+    }
+    if (status == CP_OK)
+        status = adjust(comparison, error);
+    free(p.pair);
+    free(p.cluster);
+    cp_replication_set_destroy(&set);
+    return status;
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef REPORT_COUNTERFACTUAL_H
+#define REPORT_COUNTERFACTUAL_H
+
+#include "report/comparison.h"
+
+/* Strictly paired comparison: each frontal crash of the baseline beside what became of it under a
+ * treatment. Pairs of one replication belong together in every interval and test. */
+
+/* Fill comparison->counterfactual for the comparison's slice. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_compare_counterfactual(const cp_study_data *data,
+                                                  const cp_comparison_options *options,
+                                                  cp_comparison *comparison, cp_error *error);
+
+#endif

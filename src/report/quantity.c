@@ -1,0 +1,435 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/quantity.h"
+
+#include "core/units.h"
+#include "store/comparison_rows.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+void cp_quantities_destroy(cp_quantities *list)
+{
+    free(list->row);
+    *list = (cp_quantities){0};
+}
+
+const char *cp_relation_text(cp_relation relation)
+{
+    static const char *const RELATION[] = {
+        [CP_NO_VALUE] = "", [CP_EXACTLY] = "=", [CP_LESS_THAN] = "<", [CP_MORE_THAN] = ">"};
+    return RELATION[relation];
+}
+
+static cp_estimate exactly(double value)
+{
+    return (cp_estimate){isnan(value) ? CP_NO_VALUE : CP_EXACTLY, value};
+}
+
+static cp_estimate counted(size_t value)
+{
+    return exactly((double)value);
+}
+
+/* Where rows go, and what they have in common. */
+typedef struct writer {
+    cp_quantities *list;
+    const char *section;
+    int scope;
+    double factor;
+} writer;
+
+static cp_quantity *add(const writer *w, const char *name, const char *label, int digits,
+                        cp_estimate estimate)
+{
+    cp_quantities *list = w->list;
+    if (list->count == list->room) {
+        size_t room = list->room ? 2 * list->room : 128;
+        cp_quantity *row = realloc(list->row, room * sizeof *row);
+        if (!row) {
+            list->failed = true;
+            return &list->spare;
+        }
+        list->row = row;
+        list->room = room;
+    }
+    cp_quantity *q = &list->row[list->count++];
+    *q = (cp_quantity){.section = w->section,
+                       .scope = w->scope,
+                       .digits = digits,
+                       .factor = w->factor,
+                       .estimate = estimate};
+    snprintf(q->name, sizeof q->name, "%s", name);
+    snprintf(q->label, sizeof q->label, "%s", label ? label : "");
+    return q;
+}
+
+static void add_interval(const writer *w, const char *name, const char *label, int digits,
+                         cp_estimate estimate, const char *kind, cp_interval interval)
+{
+    cp_quantity *q = add(w, name, label, digits, estimate);
+    q->kind = kind;
+    q->interval = interval;
+}
+
+// A name of parts: "olc" + "_median" + "_g".
+static const char *named(char text[CP_QUANTITY_TEXT_SIZE], const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static const char *named(char text[CP_QUANTITY_TEXT_SIZE], const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, CP_QUANTITY_TEXT_SIZE, format, list);
+    va_end(list);
+    return text;
+}
+
+/* How the quantities are called, in the order of cp_slice_quantity. */
+static const struct {
+    const char *name;
+    const char *unit;
+    const char *section;
+    double factor; /* of the table */
+    int digits;
+    bool whole; /* all figures in the table, not only mean, median, p90 */
+} QUANTITY[CP_QUANTITY_COUNT] = {
+    {"olc", "g", "OLC, g", 1.0, 1, true},
+    {"delta_v", "m_s", "delta-v, km/h", 3.6, 1, false},
+    {"closing_speed", "m_s", "closing speed, km/h", 3.6, 1, false},
+    {"lateral_offset", "m", "lateral offset, mm", 1000.0, 0, false},
+    {"angle", "rad", "angle, degrees", 180.0 / CP_PI, 0, false},
+};
+
+// ---- figures of a variant --------------------------------------------------------------------
+
+static void add_description(const writer *w, int q, const cp_description *d)
+{
+    char name[CP_QUANTITY_TEXT_SIZE];
+    const char *of = QUANTITY[q].name, *unit = QUANTITY[q].unit;
+    bool whole = QUANTITY[q].whole;
+    int digits = QUANTITY[q].digits;
+    const writer count = {w->list, w->section, w->scope, 1.0};
+    const struct {
+        const char *part;
+        const char *label;
+        bool always;
+        cp_estimate estimate;
+    } rows[] = {
+        {"mean", "  mean", true, exactly(d->mean)},
+        {"sd", "  sd", false, exactly(d->sd)},
+        {"min", "  min", false, d->minimum},
+        {"q25", "  25 %", false, d->q25},
+        {"median", "  median", true, d->median},
+        {"q75", "  75 %", false, d->q75},
+        {"p90", "  90 %", true, d->p90},
+        {"p95", "  95 %", false, d->p95},
+        {"max", "  max", false, d->maximum},
+    };
+    add(&count, named(name, "%s_n", of), whole ? "  n" : NULL, 0, counted(d->count));
+    add(&count, named(name, "%s_censored", of), whole ? "  left-censored" : NULL, 0,
+        counted(d->censored));
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        add(w, named(name, "%s_%s_%s", of, rows[k].part, unit),
+            whole || rows[k].always ? rows[k].label : NULL, digits, rows[k].estimate);
+}
+
+static void add_rates(const writer *w, const cp_variant_figures *v)
+{
+    double share = v->frontal_vehicles ? (double)v->inside / (double)v->frontal_vehicles : NAN;
+    add(w, "replications", "replications", 0, counted(v->replications));
+    add(w, "vehicle_km", "vehicle-km", 1, exactly(v->vehicle_km));
+    add(w, "vehicle_h", "vehicle-h", 1, exactly(v->vehicle_h));
+    add(w, "crashes", "crashes", 0, counted(v->crashes));
+    add(w, "frontal_crashes", "frontal crashes", 0, counted(v->frontal_crashes));
+    add(w, "front_front_inside", "  front-front inside validity", 0,
+        counted(v->front_front_inside));
+    add_interval(w, "frontal_crashes_per_million_km", "frontal crashes per 10^6 veh-km", 0,
+                 exactly(v->rate), "bootstrap", v->rate_bootstrap);
+    add_interval(w, "frontal_crashes_per_million_km", NULL, 0, exactly(v->rate), "poisson",
+                 v->rate_garwood);
+    add(w, "dispersion", "  dispersion over replications", 2, exactly(v->dispersion_1));
+    add(w, "frontal_crashes_per_million_km_half_width_1", "  half-width, share of the rate", 2,
+        exactly(v->rate_precision.relative_1));
+    add(w, "replications_for_rate_within_10_percent", "  replications for +-10 %", 0,
+        exactly(v->rate_precision.replications_needed));
+    add(w, "frontal_vehicles", "vehicles struck on the front", 0, counted(v->frontal_vehicles));
+    add(w, "simulation_failed", "  crash simulation failed", 0, counted(v->simulation_failed));
+    add(w, "share_inside_validity", "  share inside validity", 2, exactly(share));
+}
+
+static void add_injuries(const cp_study_data *data, writer w, const cp_injury_figures *injury)
+{
+    char name[CP_QUANTITY_TEXT_SIZE], label[CP_QUANTITY_TEXT_SIZE];
+    w.section = "injured drivers expected per 10^6 veh-km";
+    for (size_t k = 0; k < data->risk_count; k++) {
+        const cp_study_risk *risk = &data->risk[k];
+        add(&w, named(name, "expected_injured_%.30s_%.20s", risk->name, risk->level), NULL, 2,
+            exactly(injury[k].expected));
+        add_interval(
+            &w, named(name, "expected_injured_per_million_km_%.30s_%.20s", risk->name, risk->level),
+            named(label, "  %.30s (%.30s)", risk->level, risk->name), 1, exactly(injury[k].rate),
+            "bootstrap", injury[k].rate_interval);
+    }
+}
+
+void cp_quantities_of_variant(const cp_study_data *data, const cp_variant_figures *figures,
+                              cp_quantities *list)
+{
+    writer w = {list, NULL, -1, 1.0};
+    add_rates(&w, figures);
+    for (w.scope = 0; w.scope < CP_SCOPE_COUNT; w.scope++) {
+        for (int q = 0; q < CP_QUANTITY_COUNT; q++) {
+            w.section = QUANTITY[q].section;
+            w.factor = QUANTITY[q].factor;
+            add_description(&w, q, &figures->description[q][w.scope]);
+            if (q != CP_QUANTITY_OLC)
+                continue;
+            add_interval(&w, "olc_mean_g", NULL, 1, exactly(figures->description[q][w.scope].mean),
+                         "bootstrap", figures->olc_mean_interval[w.scope]);
+            add(&w, "olc_ecdf_band_half_width_1", NULL, 3,
+                exactly(figures->olc_band[w.scope].half_width_1));
+            add(&w, "replications_for_olc_mean_within_10_percent", "  replications for mean +-10 %",
+                0, exactly(figures->olc_mean_precision[w.scope].replications_needed));
+        }
+        w.factor = 1.0;
+        add_injuries(data, w, figures->injury[w.scope]);
+    }
+}
+
+// ---- figures of a contrast -------------------------------------------------------------------
+
+static void add_contrast(const writer *w, int q, const cp_contrast *c, double p_holm)
+{
+    char name[CP_QUANTITY_TEXT_SIZE];
+    const char *of = QUANTITY[q].name, *unit = QUANTITY[q].unit;
+    int digits = QUANTITY[q].digits;
+    const writer pure = {w->list, w->section, w->scope, 1.0};
+    bool whole = QUANTITY[q].whole;
+    add_interval(w, named(name, "%s_median_difference_%s", of, unit), "  difference of medians",
+                 digits, c->median_difference, "bootstrap", c->median_interval);
+    add_interval(w, named(name, "%s_mean_difference_%s", of, unit), "  difference of means", digits,
+                 c->mean_difference, "bootstrap", c->mean_interval);
+    add_interval(w, named(name, "%s_p90_difference_%s", of, unit),
+                 whole ? "  difference of 90 % quantiles" : NULL, digits, c->p90_difference,
+                 "bootstrap", c->p90_interval);
+    add_interval(&pure, named(name, "%s_cliffs_delta", of), "  Cliff's delta", 2,
+                 exactly(c->cliffs_delta), "bootstrap", c->cliffs_delta_interval);
+    add(&pure, named(name, "%s_mann_whitney_u", of), NULL, 1, exactly(c->mann_whitney.statistic));
+    add(&pure, named(name, "%s_mann_whitney_p", of), "  p (Mann-Whitney)", 4,
+        exactly(c->mann_whitney.p));
+    add(&pure, named(name, "%s_mann_whitney_p_holm", of), "  p, Holm", 4, exactly(p_holm));
+    add(&pure, named(name, "%s_kolmogorov_smirnov_d", of),
+        whole ? "  largest distance of ECDFs" : NULL, 2, exactly(c->kolmogorov_smirnov.statistic));
+    add(&pure, named(name, "%s_kolmogorov_smirnov_p", of),
+        whole ? "  p (Kolmogorov-Smirnov)" : NULL, 4, exactly(c->kolmogorov_smirnov.p));
+}
+
+static void add_benefits(const cp_study_data *data, const writer *w,
+                         const cp_benefit_figures *benefit)
+{
+    char name[CP_QUANTITY_TEXT_SIZE], label[CP_QUANTITY_TEXT_SIZE];
+    const writer percent = {w->list, "benefit, % fewer injured drivers expected", w->scope, 100.0};
+    for (size_t k = 0; k < data->risk_count; k++) {
+        const cp_study_risk *risk = &data->risk[k];
+        add_interval(&percent, named(name, "benefit_1_%.30s_%.30s", risk->name, risk->level),
+                     named(label, "  %.30s (%.30s)", risk->level, risk->name), 1,
+                     exactly(benefit[k].benefit_1), "bootstrap", benefit[k].interval);
+    }
+}
+
+void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figures *figures,
+                               cp_quantities *list)
+{
+    writer w = {list, NULL, -1, 1.0};
+    add_interval(&w, "rate_ratio", "rate ratio of frontal crashes", 2, exactly(figures->rate_ratio),
+                 "bootstrap", figures->rate_ratio_bootstrap);
+    add_interval(&w, "rate_ratio", NULL, 2, exactly(figures->rate_ratio), "poisson",
+                 figures->rate_ratio_poisson);
+    add(&w, "rate_p", "  p", 4, exactly(figures->rate_p));
+    add(&w, "rate_p_holm", "  p, Holm", 4, exactly(figures->rate_p_holm));
+    add(&w, "replications_for_rate_ratio_within_10_percent", "  replications for +-10 %", 0,
+        exactly(figures->rate_ratio_precision.replications_needed));
+    for (w.scope = 0; w.scope < CP_SCOPE_COUNT; w.scope++) {
+        for (int q = 0; q < CP_QUANTITIES_COMPARED; q++) {
+            w.section = QUANTITY[q].section;
+            w.factor = QUANTITY[q].factor;
+            add_contrast(&w, q, &figures->severity[q][w.scope],
+                         figures->severity_p_holm[q][w.scope]);
+        }
+        add_benefits(data, &w, figures->benefit[w.scope]);
+    }
+}
+
+// ---- figures of counterfactual pairs -----------------------------------------------------------
+
+static void add_paired(const writer *w, const char *of, const char *unit, const char *which,
+                       const cp_paired *paired, double p_holm)
+{
+    char name[CP_QUANTITY_TEXT_SIZE];
+    const writer pure = {w->list, w->section, -1, 1.0};
+    add(&pure, named(name, "paired_%s_%s_n", of, which), "  pairs", 0, counted(paired->count));
+    add_interval(w, named(name, "paired_%s_%s_hodges_lehmann_%s", of, which, unit),
+                 "  change, Hodges-Lehmann", 1, exactly(paired->hodges_lehmann), "bootstrap",
+                 paired->hodges_lehmann_interval);
+    add_interval(w, named(name, "paired_%s_%s_mean_%s", of, which, unit), "  mean change", 1,
+                 exactly(paired->mean), "bootstrap", paired->mean_interval);
+    add(&pure, named(name, "paired_%s_%s_lower", of, which), "  pairs with less", 0,
+        counted(paired->lower));
+    add(&pure, named(name, "paired_%s_%s_higher", of, which), "  pairs with more", 0,
+        counted(paired->higher));
+    add(&pure, named(name, "paired_%s_%s_signed_rank_v", of, which), NULL, 1,
+        exactly(paired->signed_rank.statistic));
+    add(&pure, named(name, "paired_%s_%s_signed_rank_p", of, which),
+        "  p (signed rank, by replication)", 4, exactly(paired->signed_rank.p));
+    if (!isnan(p_holm))
+        add(&pure, named(name, "paired_%s_%s_signed_rank_p_holm", of, which), "  p, Holm", 4,
+            exactly(p_holm));
+}
+
+void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_figures *figures,
+                            cp_quantities *list)
+{
+    char name[CP_QUANTITY_TEXT_SIZE], label[CP_QUANTITY_TEXT_SIZE];
+    writer w = {list, NULL, -1, 1.0};
+    add(&w, "pairs", "frontal crashes of the baseline", 0, counted(figures->crashes));
+    add(&w, "valid_pairs", "  valid pairs", 0, counted(figures->valid));
+    for (int o = 0; o < CP_OUTCOME_NO_OLC; o++)
+        add(&w, named(name, "outcome_%s", cp_outcome_text((cp_outcome)o)),
+            named(label, "  %s", cp_outcome_text((cp_outcome)o)), 0, counted(figures->outcome[o]));
+    for (int o = CP_OUTCOME_CHANGED_OPPONENT; o < CP_OUTCOME_NO_OLC; o++) {
+        double share = figures->valid ? (double)figures->outcome[o] / (double)figures->valid : NAN;
+        add_interval(&w, named(name, "share_%s_1", cp_outcome_text((cp_outcome)o)),
+                     named(label, "  share %s", cp_outcome_text((cp_outcome)o)), 2, exactly(share),
+                     "bootstrap", figures->share[o]);
+    }
+    for (int o = 0; o <= CP_OUTCOME_NO_OLC; o++)
+        add(&w, named(name, "outcome_by_olc_%s", cp_outcome_text((cp_outcome)o)), NULL, 0,
+            counted(figures->outcome_olc[o]));
+    for (int r = CP_NULL_REPRODUCED + 1; r <= CP_NULL_NOT_REPRODUCED; r++)
+        add(&w, named(name, "invalid_%s", cp_null_status_text((cp_null_status)r)), NULL, 0,
+            counted(figures->reason[r]));
+    add(&w, "new_crashes", "new crashes between others", 0, exactly(figures->new_crashes));
+    static const char *const OLC[] = {"OLC, g, all valid pairs (avoided = 0 g)",
+                                      "OLC, g, conditional on crashing"};
+    static const char *const SPEED[] = {"closing speed, km/h, all valid pairs (avoided = 0)",
+                                        "closing speed, km/h, conditional on crashing"};
+    for (int which = 0; which < CP_PAIRED_COUNT; which++) {
+        w.section = OLC[which];
+        add_paired(&w, "olc", "g", CP_PAIRED_TEXT[which], &figures->olc_g[which],
+                   figures->p_holm[which]);
+    }
+    for (int which = 0; which < CP_PAIRED_COUNT; which++) {
+        writer speed = {list, SPEED[which], -1, 3.6};
+        add_paired(&speed, "closing_speed", "m_s", CP_PAIRED_TEXT[which],
+                   &figures->closing_speed_m_s[which], NAN);
+    }
+    w.section = NULL;
+    add_benefits(data, &w, figures->benefit);
+}
+
+// ---- into the database
+// ---------------------------------------------------------------------------
+
+/* Rows that borrow from lists which live as long. */
+typedef struct stored {
+    cp_comparison_figure_row *row;
+    size_t count;
+    size_t room;
+} stored;
+
+static cp_status append(stored *s, const char *group, const char *variant, const char *against,
+                        const cp_quantities *list, cp_error *error)
+{
+    if (list->failed)
+        return cp_fail_memory(error, "the figures of a comparison");
+    if (s->count + list->count > s->room) {
+        size_t room = 2 * (s->room + list->count);
+        cp_comparison_figure_row *row = realloc(s->row, room * sizeof *row);
+        if (!row)
+            return cp_fail_memory(error, "the figures of a comparison");
+        s->row = row;
+        s->room = room;
+    }
+    for (size_t k = 0; k < list->count; k++) {
+        const cp_quantity *q = &list->row[k];
+        bool interval = q->kind && q->interval.status == CP_INTERVAL_VALUE;
+        const char *kind = NULL;
+        if (q->kind)
+            kind = interval ? q->kind : cp_interval_status_text(q->interval.status);
+        s->row[s->count++] = (cp_comparison_figure_row){
+            .by_value = group,
+            .variant = variant,
+            .against = against,
+            .scope = q->scope < 0 ? "" : CP_SCOPE_TEXT[q->scope],
+            .quantity = q->name,
+            .relation = cp_relation_text(q->estimate.relation),
+            .value = q->estimate.value,
+            .low = interval ? q->interval.low : NAN,
+            .high = interval ? q->interval.high : NAN,
+            .interval = kind,
+        };
+    }
+    return CP_OK;
+}
+
+cp_status cp_comparison_store(cp_store *store, const cp_study_data *data,
+                              const cp_comparison *comparison, const char *const *group,
+                              size_t group_count, const cp_comparison_options *options,
+                              const char *scenario, const char *by, const char *where_sql,
+                              const char *answer, cp_error *error)
+{
+    // One list for every figure list, kept until the rows that borrow from them are written.
+    size_t most = 0, used = 0;
+    for (size_t g = 0; g < group_count; g++)
+        most += comparison[g].variant_count + comparison[g].contrast_count +
+                comparison[g].counterfactual_count;
+    cp_quantities *list = calloc(most + 1, sizeof *list);
+    stored s = {0};
+    cp_status status = list ? CP_OK : cp_fail_memory(error, "the figures of a comparison");
+    for (size_t g = 0; g < group_count && status == CP_OK; g++) {
+        const cp_comparison *c = &comparison[g];
+        const char *baseline = data->variant[c->baseline].name;
+        for (size_t k = 0; k < c->variant_count && status == CP_OK; k++, used++) {
+            cp_quantities_of_variant(data, &c->variant[k], &list[used]);
+            status = append(&s, group[g], data->variant[c->variant[k].variant].name, "",
+                            &list[used], error);
+        }
+        for (size_t k = 0; k < c->contrast_count && status == CP_OK; k++, used++) {
+            cp_quantities_of_contrast(data, &c->contrast[k], &list[used]);
+            status = append(&s, group[g], data->variant[c->contrast[k].variant].name, baseline,
+                            &list[used], error);
+        }
+        for (size_t k = 0; k < c->counterfactual_count && status == CP_OK; k++, used++) {
+            cp_quantities_of_pairs(data, &c->counterfactual[k], &list[used]);
+            status = append(&s, group[g], data->variant[c->counterfactual[k].variant].name,
+                            baseline, &list[used], error);
+        }
+    }
+    if (status == CP_OK && group_count > 0) {
+        const char *design = json_string_value(
+            json_object_get(json_array_get(json_object_get(data->about, "study"), 0), "design"));
+        cp_comparison_rows rows = {
+            .baseline = data->variant[comparison[0].baseline].name,
+            .scenario = scenario,
+            .by = by,
+            .where_sql = where_sql,
+            .design = design ? design : "",
+            .seed = data->seed,
+            .repetitions = options->repetitions,
+            .permutations = options->permutations,
+            .replications = data->replication_count,
+            .crashes = data->crash_count,
+            .answer = answer,
+            .figure = s.row,
+            .figure_count = s.count,
+        };
+        status = cp_comparison_rows_replace(store, &rows, error);
+    }
+    for (size_t k = 0; list && k <= most; k++)
+        cp_quantities_destroy(&list[k]);
+    free(list);
+    free(s.row);
+    return status;
+}

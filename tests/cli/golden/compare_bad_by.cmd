@@ -1,0 +1,1 @@
+"$crashpulse" compare "$db" --no-store --by "1; DROP TABLE crash"

@@ -3,7 +3,7 @@
 (function () {
   const data = JSON.parse(document.getElementById("data").textContent);
   const vehicles = data.vehicles;
-  const state = { scenario: "", crashType: "", scope: "all" };
+  const state = { scenario: "", crashType: "", scope: "all", variants: new Set(data.variants.map((v, k) => k)) };
   const CENSORED = 1, FAILED = 2;
   const SYMBOLS = [d3.symbolCircle, d3.symbolTriangle, d3.symbolSquare, d3.symbolDiamond, d3.symbolCross, d3.symbolStar];
   const DASHES = [null, "7 3", "2 3", "9 3 2 3", "5 5", "1 4"];
@@ -32,10 +32,17 @@
     return data.slices.find(s => (s.scenario || "") === state.scenario && (s.crash_type || "") === state.crashType);
   }
 
-  // Indices of the frontally struck vehicles in the present slice and scope.
+  // Index of a variant by its name; figures of a slice, chosen variants only.
+  const indexOf = name => data.variants.findIndex(v => v.name === name);
+  const shownVariants = () => slice().variants.filter(v => state.variants.has(indexOf(v.variant)));
+  const shownContrasts = () => slice().contrasts.filter(c => state.variants.has(indexOf(c.variant)));
+  const shownPairs = () => slice().counterfactual.filter(c => state.variants.has(indexOf(c.variant)));
+
+  // Indices of the frontally struck vehicles in the present slice, scope and variants.
   function chosen() {
     const scenario = data.scenarios.indexOf(state.scenario), type = data.crash_types.indexOf(state.crashType);
     return d3.range(vehicles.variant.length).filter(k =>
+      state.variants.has(vehicles.variant[k]) &&
       (state.scenario === "" || vehicles.scenario[k] === scenario) &&
       (state.crashType === "" || vehicles.crash_type[k] === type) &&
       (state.scope === "all" || vehicles.validity[k] === 0));
@@ -192,7 +199,7 @@
   const rateFigure = figure("figure-rate", "Frontal crash rate",
     () => "Frontal crashes per million vehicle-km, of any validity. Thick: 95 % bootstrap over replications, from 20 replications on. Thin: exact Poisson interval, too narrow where replications differ (dispersion above 1).",
     function (svg, width) {
-      const rows = slice().variants, margin = { top: 8, right: 16, bottom: 48, left: 16 };
+      const rows = shownVariants(), margin = { top: 8, right: 16, bottom: 48, left: 16 };
       const band = Math.max(58, Math.min(104, 300 / rows.length)), height = margin.top + band * rows.length + margin.bottom, w = width - margin.left - margin.right;
       const upper = d3.max(rows, v => d3.max([v.frontal_crashes_per_million_km.value, v.frontal_crashes_per_million_km.garwood.high, v.frontal_crashes_per_million_km.bootstrap.high]));
       const x = d3.scaleLinear().domain([0, upper || 1]).nice().range([0, w]);
@@ -201,8 +208,8 @@
       inner.selectAll(null).data(x.ticks(ticks)).enter().append("line").attr("class", "gridline").attr("y2", h).attr("x1", x).attr("x2", x);
       inner.append("g").attr("class", "axis").attr("transform", `translate(0,${h})`).call(d3.axisBottom(x).ticks(ticks).tickFormat(integer).tickSizeOuter(0));
       inner.append("text").attr("class", "axis-title").attr("x", w / 2).attr("y", h + 38).attr("text-anchor", "middle").text("frontal crashes per 10⁶ vehicle-km");
-      rows.forEach((v, k) => {
-        const r = v.frontal_crashes_per_million_km, y = band * (k + 0.5) + 10;
+      rows.forEach((v, row) => {
+        const k = indexOf(v.variant), r = v.frontal_crashes_per_million_km, y = band * (row + 0.5) + 10;
         const label = inner.append("text").attr("y", y - 16);
         label.append("tspan").style("font-weight", 600).text(v.variant);
         label.append("tspan").attr("class", "soft").text(`  ${v.frontal_crashes} crashes in ${integer(Math.round(v.vehicle_km))} veh-km${width < 460 ? "" : `, dispersion ${fixed(r.dispersion, 2)}`}`);
@@ -218,55 +225,116 @@
       return height;
     },
     function () {
-      const rows = slice().variants.map(v => {
+      const rows = shownVariants().map(v => {
         const r = v.frontal_crashes_per_million_km, boot = r.bootstrap.status === "value";
         return [v.variant, v.replications, v.vehicle_km, v.frontal_crashes, r.value, r.garwood.low, r.garwood.high, boot ? r.bootstrap.low : r.bootstrap.status, boot ? r.bootstrap.high : r.bootstrap.status, r.dispersion];
       });
       return {
-        summary: slice().variants.map(v => `${v.variant}: ${rate(v.frontal_crashes_per_million_km.value)}`).join("; "),
+        summary: shownVariants().map(v => `${v.variant}: ${rate(v.frontal_crashes_per_million_km.value)}`).join("; "),
         columns: ["variant", "replications", "vehicle_km", "frontal_crashes", "per_million_km", "garwood_low", "garwood_high", "bootstrap_low", "bootstrap_high", "dispersion"],
         rows: rows
       };
     });
 
+  // A vertical line that follows the pointer over a plot, with a word for each curve. text(x) gives lines.
+  function readout(svg, inner, x, height, text) {
+    const line = inner.append("line").attr("y2", height).style("stroke", "var(--soft)").style("display", "none");
+    const box = inner.append("text").attr("y", 12).style("display", "none").attr("class", "readout");
+    inner.append("rect").attr("width", x.range()[1]).attr("height", height).style("fill", "transparent")
+      .on("mousemove touchmove", function () {
+        const at = Math.max(0, Math.min(x.range()[1], d3.mouse(this)[0])), left = at > x.range()[1] / 2;
+        line.style("display", null).attr("x1", at).attr("x2", at);
+        box.style("display", null).attr("text-anchor", left ? "end" : "start").selectAll("tspan").remove();
+        text(x.invert(at)).forEach((words, k) => box.append("tspan").attr("x", at + (left ? -7 : 7)).attr("dy", k ? 15 : 0).text(words));
+      })
+      .on("mouseleave touchend", () => { line.style("display", "none"); box.style("display", "none"); });
+  }
+
   // ---- distribution of OLC -----------------------------------------------------------------------
 
-  // Steps of every variant: share of vehicles with an OLC up to the value; NULL first for censored.
+  // Steps of every chosen variant, and the half width of its band where there is one.
   function distributions() {
-    const rows = chosen().filter(k => vehicles.status[k] !== FAILED);
-    return data.variants.map((v, variant) => {
-      const own = rows.filter(k => vehicles.variant[k] === variant);
-      const values = own.filter(k => vehicles.status[k] !== CENSORED).map(k => vehicles.olc_g[k]).sort(d3.ascending);
-      const censored = own.length - values.length;
-      return { variant: variant, name: v.name, n: own.length, censored: censored, values: values, share: k => (censored + k) / own.length };
+    return shownVariants().map(v => {
+      const e = v.ecdf[state.scope], half = v.olc_g[state.scope].ecdf_band_half_width_1;
+      return { variant: indexOf(v.variant), name: v.variant, n: e.n, censored: e.censored, x: e.x, share: e.share, first: e.n ? e.censored / e.n : 0, half: missing(half) ? null : half };
     }).filter(d => d.n > 0);
   }
 
+  const shareAt = (c, x) => { const k = d3.bisectRight(c.x, x); return k ? c.share[k - 1] : c.first; };
+
   const ecdfFigure = figure("figure-ecdf", "Distribution of OLC",
-    () => `Share of ${scopeText()} with an OLC up to the value. A curve that starts above 0 has left-censored vehicles: too little deceleration for an OLC, below every value.`,
+    () => `Share of ${scopeText()} with an OLC up to the value${distributions().some(c => c.half !== null) ? "; band: 95 % for the whole curve at once, by bootstrap over replications" : "; too few replications for a band"}. A curve that starts above 0 has left-censored vehicles: too little deceleration for an OLC, below every value.`,
     function (svg, width) {
       const curves = distributions();
       const top = legend(svg, width, curves.map(c => ({ variant: c.variant, label: `${c.name} (n = ${c.n}${c.censored ? `, ${c.censored} censored` : ""})` })), lineMark);
       const margin = { top: top + 4, right: 16, bottom: 48, left: 52 }, height = margin.top + Math.min(330, 140 + width * 0.35) + margin.bottom;
-      const x = d3.scaleLinear().domain([0, d3.max(curves, c => d3.max(c.values)) || 1]).nice().range([0, width - margin.left - margin.right]);
+      const x = d3.scaleLinear().domain([0, d3.max(curves, c => d3.max(c.x)) || 1]).nice().range([0, width - margin.left - margin.right]);
       const y = d3.scaleLinear().domain([0, 1]).range([height - margin.top - margin.bottom, 0]);
       const inner = frame(svg, width, height, margin, x, y, "OLC, g", "share of vehicles");
-      inner.append("line").attr("x2", x.range()[1]).attr("y1", y(0.5)).attr("y2", y(0.5)).attr("class", "axis").style("stroke", "var(--soft)").style("stroke-dasharray", "2 4");
+      inner.append("line").attr("x2", x.range()[1]).attr("y1", y(0.5)).attr("y2", y(0.5)).style("stroke", "var(--soft)").style("stroke-dasharray", "2 4");
+      const steps = c => [[0, c.first], ...c.x.map((value, k) => [value, c.share[k]]), [x.domain()[1], 1]];
+      curves.filter(c => c.half !== null).forEach(c => inner.append("path").attr("class", "band")
+        .attr("d", d3.area().x(p => x(p[0])).y0(p => y(Math.max(0, p[1] - c.half))).y1(p => y(Math.min(1, p[1] + c.half))).curve(d3.curveStepAfter)(steps(c)))
+        .style("fill", colour(c.variant)).style("opacity", 0.14));
       curves.forEach(c => {
-        const points = [[0, c.share(0)], ...c.values.map((value, k) => [value, c.share(k + 1)]), [x.domain()[1], 1]];
-        inner.append("path").attr("d", d3.line().x(p => x(p[0])).y(p => y(p[1])).curve(d3.curveStepAfter)(points))
+        inner.append("path").attr("d", d3.line().x(p => x(p[0])).y(p => y(p[1])).curve(d3.curveStepAfter)(steps(c)))
           .style("fill", "none").style("stroke", colour(c.variant)).style("stroke-width", 2.2).style("stroke-dasharray", DASHES[c.variant % 6]);
-        if (c.censored) inner.append("path").attr("d", symbol(c.variant, 60)).attr("transform", `translate(0,${y(c.share(0))})`).style("fill", colour(c.variant));
+        if (c.censored) inner.append("path").attr("d", symbol(c.variant, 60)).attr("transform", `translate(0,${y(c.first)})`).style("fill", colour(c.variant));
       });
+      readout(svg, inner, x, y.range()[0], value => [`${fixed(value, 1)} g`, ...curves.map(c => `${c.name}: ${percent(shareAt(c, value))}`)]);
       return height;
     },
     function () {
       const rows = [];
       distributions().forEach(c => {
-        if (c.censored) rows.push([c.name, null, c.share(0)]);
-        c.values.forEach((value, k) => rows.push([c.name, value, c.share(k + 1)]));
+        const add = (value, share) => rows.push([c.name, value, share, c.half === null ? null : Math.max(0, share - c.half), c.half === null ? null : Math.min(1, share + c.half)]);
+        if (c.censored) add(null, c.first);
+        c.x.forEach((value, k) => add(value, c.share[k]));
       });
-      return { summary: distributions().map(c => `${c.name}: ${c.n} vehicles, ${c.censored} censored`).join("; "), columns: ["variant", "olc_g", "share"], rows: rows };
+      return { summary: distributions().map(c => `${c.name}: ${c.n} vehicles, ${c.censored} censored`).join("; "), columns: ["variant", "olc_g", "share", "band_low", "band_high"], rows: rows };
+    });
+
+  // ---- differences of OLC with their intervals -------------------------------------------------------
+
+  // One row a treatment and measure: {name, what, value, low, high, status}; null bounds are open.
+  function differences() {
+    const rows = [];
+    shownContrasts().forEach(c => {
+      const o = c.olc_g[state.scope];
+      [["median", o.median_difference, o.median_interval], ["mean", o.mean_difference, o.mean_interval], ["90 % quantile", o.p90_difference, o.p90_interval]]
+        .forEach(([what, e, i]) => rows.push({ name: c.variant, what: `difference of ${what}`, value: missing(e) ? null : e.value, low: i.low, high: i.high, status: i.status }));
+    });
+    shownPairs().forEach(c => [["all_pairs", "paired change, avoided = 0 g"], ["conditional_on_crashing", "paired change, conditional on crashing"]].forEach(([key, what]) => {
+      const p = c.olc_change_g[key], i = p.hodges_lehmann_interval;
+      rows.push({ name: c.variant, what: `${what} (n = ${p.pairs})`, value: p.hodges_lehmann, low: i.low, high: i.high, status: i.status });
+    }));
+    return rows.filter(r => !missing(r.value));
+  }
+
+  const differenceFigure = figure("figure-difference", "Change of OLC against the baseline",
+    () => (slice().counterfactual.length ? "Hodges–Lehmann estimate of the change within pairs" : "Treatment minus baseline") + `, over ${scopeText()}, with 95 % bootstrap intervals over replications${differences().some(r => r.status === "value") ? "" : ": too few replications for any here"}. Left of zero: less severe.`,
+    function (svg, width) {
+      const rows = differences(), margin = { top: 10, right: 16, bottom: 48, left: 16 }, band = 46, h = band * rows.length, w = width - margin.left - margin.right;
+      const reach = d3.max(rows, r => d3.max([r.value, r.low, r.high].filter(v => !missing(v)).map(Math.abs))) || 1;
+      const x = d3.scaleLinear().domain([-reach, reach]).nice().range([0, w]);
+      const inner = svg.append("g").attr("transform", `translate(${margin.left},${margin.top})`), ticks = Math.max(3, Math.round(w / 80));
+      inner.selectAll(null).data(x.ticks(ticks)).enter().append("line").attr("class", "gridline").attr("y2", h).attr("x1", x).attr("x2", x);
+      inner.append("line").attr("y2", h).attr("x1", x(0)).attr("x2", x(0)).style("stroke", "var(--ink)");
+      inner.append("g").attr("class", "axis").attr("transform", `translate(0,${h})`).call(d3.axisBottom(x).ticks(ticks).tickSizeOuter(0));
+      inner.append("text").attr("class", "axis-title").attr("x", w / 2).attr("y", h + 38).attr("text-anchor", "middle").text("change of OLC, g");
+      rows.forEach((r, k) => {
+        const v = indexOf(r.name), y = band * (k + 0.5) + 9;
+        const label = inner.append("text").attr("y", y - 15);
+        label.append("tspan").style("font-weight", 600).text(r.name);
+        label.append("tspan").attr("class", "soft").text(`  ${r.what}: ${fixed(r.value, 1)} g${r.status === "value" && width > 460 ? ` (${interval({ status: "value", low: r.low, high: r.high }, n => fixed(n, 1))})` : ""}`);
+        if (r.status === "value") inner.append("line").attr("x1", x(missing(r.low) ? x.domain()[0] : r.low)).attr("x2", x(missing(r.high) ? x.domain()[1] : r.high)).attr("y1", y).attr("y2", y).style("stroke", colour(v)).style("stroke-width", 2.4);
+        inner.append("path").attr("d", symbol(v, 80)).attr("transform", `translate(${x(r.value)},${y})`).style("fill", colour(v));
+      });
+      return margin.top + h + margin.bottom;
+    },
+    function () {
+      const rows = differences().map(r => [r.name, r.what, r.value, r.low, r.high, r.status]);
+      return { summary: rows.map(r => `${r[0]}, ${r[1]}: ${fixed(r[2], 1)} g`).join("; "), columns: ["treatment", "change", "olc_g", "low", "high", "interval"], rows: rows };
     });
 
   // ---- OLC against closing speed -------------------------------------------------------------------
@@ -275,7 +343,7 @@
     () => `${scopeText().replace(/^./, c => c.toUpperCase())}; filled: inside the validated range, hollow: extrapolated. Ticks at the bottom: left-censored vehicles.` + thinned(),
     function (svg, width) {
       const rows = chosen().filter(k => vehicles.status[k] !== FAILED);
-      const names = data.variants.map((v, k) => ({ variant: k, label: v.name }));
+      const names = data.variants.map((v, k) => ({ variant: k, label: v.name })).filter(n => state.variants.has(n.variant));
       const top = legend(svg, width, names, pointMark);
       const margin = { top: top + 4, right: 16, bottom: 48, left: 52 }, height = margin.top + Math.min(330, 140 + width * 0.35) + margin.bottom;
       const x = d3.scaleLinear().domain([0, d3.max(rows, k => vehicles.closing_speed_km_h[k]) || 1]).nice().range([0, width - margin.left - margin.right]);
@@ -301,39 +369,47 @@
     });
 
   function thinned() {
-    return data.drawn_every > 1 ? ` Every ${data.drawn_every}th vehicle is drawn; tables use all.` : "";
+    const s = data.sample;
+    return s.chance < 1 ? ` Drawn: a random sample of about ${integer(Math.round(s.chance * s.frontal_crashes))} of ${integer(s.frontal_crashes)} frontal crashes (seed ${s.seed}); counts, curves and tables use all.` : "";
   }
 
   // ---- configuration map ---------------------------------------------------------------------------
 
-  const mapRows = () => chosen().filter(k => vehicles.role[k] === 0);
+  const mapRows = () => {
+    // One point a crash: the vehicle of role a stands for both.
+    return chosen().filter(k => vehicles.role[k] === 0);
+  };
+  const speedColour = d3.scaleSequential(d3.interpolateViridis).domain([130, 0]).clamp(true);
 
   const mapFigure = figure("figure-map", "Crash configurations",
-    () => "Frontal crashes by lateral offset of the opponent and angle (0° = exactly oncoming, ±90° = crossing), seen from the vehicle struck on its front. Filled: that vehicle is inside the validated range." + thinned(),
+    () => "Frontal crashes by lateral offset of the opponent and angle (0° = exactly oncoming, ±90° = crossing), seen from the vehicle struck on its front; colour: closing speed. Filled: that vehicle is inside the validated range." + thinned(),
     function (svg, width) {
-      const rows = mapRows(), count = data.variants.length;
-      const columns = width >= 460 && count > 1 ? 2 : 1, panelWidth = width / columns;
+      const rows = mapRows(), variants = data.variants.map((v, k) => k).filter(k => state.variants.has(k)), count = variants.length;
+      const legendWidth = Math.min(220, width - 120), bar = svg.append("g").attr("transform", "translate(56,4)");
+      d3.range(0, 44).forEach(k => bar.append("rect").attr("x", legendWidth * k / 44).attr("width", legendWidth / 44 + 0.5).attr("height", 8).style("fill", speedColour(130 * k / 43)));
+      [0, 65, 130].forEach(v => bar.append("text").attr("x", legendWidth * v / 130).attr("y", 22).attr("text-anchor", "middle").text(v === 130 ? "≥ 130 km/h" : v));
+      const top = 30, columns = width >= 460 && count > 1 ? 2 : 1, panelWidth = width / columns;
       const margin = { top: 30, right: 14, bottom: 48, left: 56 }, panelHeight = count > columns ? 270 : Math.min(330, 140 + width * 0.35) + 78;
       const extent = d3.max(rows, k => Math.abs(vehicles.lateral_offset_m[k])) || 1;
       const limit = d3.max(rows, k => Math.abs(vehicles.angle_deg[k])) || 1;
       const x = d3.scaleLinear().domain([-extent, extent]).nice().range([0, panelWidth - margin.left - margin.right]);
       const reach = Math.min(180, 45 * Math.ceil(limit / 45)), angles = d3.range(-reach, reach + 1, reach > 45 ? 45 : 15);
       const y = d3.scaleLinear().domain([-reach, reach]).range([panelHeight - margin.top - margin.bottom, 0]);
-      data.variants.forEach((v, variant) => {
+      variants.forEach((variant, place) => {
         const own = rows.filter(k => vehicles.variant[k] === variant);
-        const panel = svg.append("g").attr("transform", `translate(${(variant % columns) * panelWidth},${Math.floor(variant / columns) * panelHeight})`);
+        const panel = svg.append("g").attr("transform", `translate(${(place % columns) * panelWidth},${top + Math.floor(place / columns) * panelHeight})`);
         const title = panel.append("text").attr("x", margin.left).attr("y", 18);
-        title.append("tspan").style("font-weight", 600).text(v.name);
+        title.append("tspan").style("font-weight", 600).text(data.variants[variant].name);
         title.append("tspan").attr("class", "soft").text(`  ${own.length} crashes`);
         const inner = frame(panel, panelWidth, panelHeight, margin, x, y, "lateral offset, m", "angle, °", angles);
         inner.append("line").attr("x2", x.range()[1]).attr("y1", y(0)).attr("y2", y(0)).style("stroke", "var(--soft)");
         inner.append("line").attr("y2", y.range()[0]).attr("x1", x(0)).attr("x2", x(0)).style("stroke", "var(--soft)");
         own.forEach(k => inner.append("path").attr("d", symbol(variant, own.length > 500 ? 16 : 34))
           .attr("transform", `translate(${x(vehicles.lateral_offset_m[k])},${y(vehicles.angle_deg[k])})`)
-          .style("fill", vehicles.validity[k] === 0 ? colour(variant) : "none").style("fill-opacity", 0.7).style("stroke", colour(variant)).style("stroke-width", 1.1)
+          .style("fill", vehicles.validity[k] === 0 ? speedColour(vehicles.closing_speed_km_h[k]) : "none").style("fill-opacity", 0.85).style("stroke", speedColour(vehicles.closing_speed_km_h[k])).style("stroke-width", 1.2)
           .append("title").text(`${fixed(vehicles.lateral_offset_m[k], 2)} m, ${fixed(vehicles.angle_deg[k], 0)}°, ${fixed(vehicles.closing_speed_km_h[k], 0)} km/h, ${readable(data.validity[vehicles.validity[k]])}`));
       });
-      return panelHeight * Math.ceil(count / columns);
+      return top + panelHeight * Math.ceil(count / columns);
     },
     function () {
       const rows = mapRows().map(k => [data.variants[vehicles.variant[k]].name, data.scenarios[vehicles.scenario[k]], data.crash_types[vehicles.crash_type[k]],
@@ -341,12 +417,205 @@
       return { summary: `${rows.length} frontal crashes`, columns: ["variant", "scenario", "crash_type", "lateral_offset_m", "angle_deg", "closing_speed_km_h", "validity"], rows: rows };
     });
 
+  // ---- crash sites on the network --------------------------------------------------------------------
+
+  const siteFigure = figure("figure-sites", "Crash sites",
+    () => "Where the first contacts lie, on the lanes of the SUMO network; metres, equal scale both ways." + data.networks.map((n, k) => n.missing ? ` ${readable(data.scenarios[k])}: drawn without its network, ${n.missing}.` : "").join("") + thinned(),
+    function (svg, width) {
+      const rows = mapRows(), names = data.variants.map((v, k) => ({ variant: k, label: v.name })).filter(n => state.variants.has(n.variant));
+      let top = legend(svg, width, names, pointMark) + 6;
+      data.scenarios.forEach((name, scenario) => {
+        const own = rows.filter(k => vehicles.scenario[k] === scenario);
+        if (own.length === 0) return;
+        const lanes = data.networks[scenario].lanes || [];
+        const x0 = d3.extent(own, k => vehicles.x_m[k]), y0 = d3.extent(own, k => vehicles.y_m[k]);
+        const pad = Math.max(25, 0.1 * Math.max(x0[1] - x0[0], y0[1] - y0[0]));
+        const box = { x: [x0[0] - pad, x0[1] + pad], y: [y0[0] - pad, y0[1] + pad] };
+        const w = width - 16, most = Math.min(420, 0.7 * width), spanX = box.x[1] - box.x[0], spanY = box.y[1] - box.y[0];
+        const scale = Math.min(w / spanX, most / spanY), h = Math.max(90, Math.min(most, spanY * scale));
+        const cx = (box.x[0] + box.x[1]) / 2, cy = (box.y[0] + box.y[1]) / 2;
+        const X = v => 8 + w / 2 + (v - cx) * scale, Y = v => h / 2 - (v - cy) * scale;
+        const title = svg.append("text").attr("x", 8).attr("y", top + 12);
+        title.append("tspan").style("font-weight", 600).text(readable(name));
+        title.append("tspan").attr("class", "soft").text(`  ${own.length} crashes`);
+        const panel = svg.append("g").attr("transform", `translate(0,${top + 20})`), clip = `clip-${scenario}-${Math.round(width)}`;
+        panel.append("clipPath").attr("id", clip).append("rect").attr("x", 8).attr("width", w).attr("height", h);
+        panel.append("rect").attr("x", 8).attr("width", w).attr("height", h).style("fill", "none").style("stroke", "var(--line)");
+        const roads = panel.append("g").attr("clip-path", `url(#${clip})`);
+        lanes.forEach(lane => {
+          const points = d3.range(0, lane.length, 2).map(k => `${X(lane[k]).toFixed(1)},${Y(lane[k + 1]).toFixed(1)}`);
+          roads.append("polyline").attr("points", points.join(" ")).style("fill", "none").style("stroke", "var(--line)").style("stroke-width", Math.max(1, 3.2 * scale)).style("stroke-linecap", "round");
+        });
+        own.forEach(k => roads.append("path").attr("class", "site").attr("d", symbol(vehicles.variant[k], own.length > 300 ? 22 : 40))
+          .attr("transform", `translate(${X(vehicles.x_m[k])},${Y(vehicles.y_m[k])})`).style("fill", colour(vehicles.variant[k])).style("fill-opacity", 0.65).style("stroke", "var(--surface)").style("stroke-width", 0.5)
+          .append("title").text(`${data.variants[vehicles.variant[k]].name}: ${fixed(vehicles.closing_speed_km_h[k], 0)} km/h at ${fixed(vehicles.x_m[k], 0)}, ${fixed(vehicles.y_m[k], 0)}`));
+        const unit = [10, 20, 50, 100, 200, 500, 1000, 2000, 5000].filter(m => m * scale < w / 3).pop() || 10;
+        panel.append("line").attr("x1", 20).attr("x2", 20 + unit * scale).attr("y1", h - 12).attr("y2", h - 12).style("stroke", "var(--ink)").style("stroke-width", 2);
+        panel.append("text").attr("x", 20).attr("y", h - 18).text(`${unit} m`);
+        top += h + 34;
+      });
+      return top;
+    },
+    function () {
+      const rows = mapRows().map(k => [data.variants[vehicles.variant[k]].name, data.scenarios[vehicles.scenario[k]], data.crash_types[vehicles.crash_type[k]], vehicles.x_m[k], vehicles.y_m[k], vehicles.closing_speed_km_h[k]]);
+      return { summary: `${rows.length} frontal crashes`, columns: ["variant", "scenario", "crash_type", "x_m", "y_m", "closing_speed_km_h"], rows: rows };
+    });
+
+  // ---- counterfactual outcomes as a flow ----------------------------------------------------------------
+
+  const OUTCOMES = ["avoided", "mitigated", "unchanged", "aggravated", "changed_opponent", "invalid"];
+  const OUTCOME_COLOUR = { avoided: "var(--v3)", mitigated: "var(--v1)", unchanged: "var(--v0)", aggravated: "var(--v2)", changed_opponent: "var(--v4)", invalid: "var(--line)" };
+
+  const flowFigure = data.study.design !== "counterfactual" ? null : figure("figure-flow", "What became of the baseline’s frontal crashes",
+    () => "Each baseline crash run again from a checkpoint before contact with the treatment on its two vehicles; outcomes by closing speed (±0.5 m/s), they add up to the baseline’s crashes. Shares are of the valid pairs, with 95 % intervals over replications.",
+    function (svg, width) {
+      const treatments = shownPairs(), panel = 250, left = 92, right = Math.min(290, 0.52 * width);
+      treatments.forEach((t, place) => {
+        const g = svg.append("g").attr("transform", `translate(0,${place * panel + 22})`), height = panel - 60, scale = (height - 50) / Math.max(1, t.crashes);
+        g.append("text").attr("x", 4).attr("y", -6).style("font-weight", 600).text(t.variant);
+        g.append("rect").attr("x", left - 14).attr("width", 14).attr("height", Math.max(1, t.crashes * scale)).style("fill", "var(--v0)");
+        g.append("text").attr("x", left - 20).attr("y", t.crashes * scale / 2).attr("text-anchor", "end").text(`${t.crashes} crashes`);
+        let from = 0, to = 0;
+        const x1 = width - right;
+        OUTCOMES.filter(o => t.outcomes[o] > 0).forEach(o => {
+          const n = t.outcomes[o], h = n * scale, mid = (left + x1) / 2, share = t.shares[o];
+          g.append("path").attr("d", `M${left},${from}C${mid},${from} ${mid},${to} ${x1},${to}V${to + h}C${mid},${to + h} ${mid},${from + h} ${left},${from + h}Z`)
+            .style("fill", OUTCOME_COLOUR[o]).style("opacity", 0.45).append("title").text(`${readable(o)}: ${n}`);
+          g.append("rect").attr("x", x1).attr("y", to).attr("width", 10).attr("height", Math.max(1, h)).style("fill", OUTCOME_COLOUR[o]);
+          const words = g.append("text").attr("x", x1 + 16).attr("y", to + Math.max(h / 2, 4) + 4);
+          words.append("tspan").style("font-weight", 600).text(`${readable(o)} ${n}`);
+          if (o !== "invalid") words.append("tspan").attr("class", "soft").text(`  ${percent(n / t.valid)}${share && share.status === "value" && width > 520 ? ` (${interval(share, percent)})` : ""}`);
+          from += h;
+          to += Math.max(h, 16) + 4;
+        });
+      });
+      return panel * treatments.length;
+    },
+    function () {
+      const rows = [];
+      shownPairs().forEach(t => OUTCOMES.forEach(o => rows.push([t.variant, o, t.outcomes[o], t.outcomes_by_olc[o], o === "invalid" ? null : t.outcomes[o] / t.valid, o === "invalid" ? null : t.shares[o].low, o === "invalid" ? null : t.shares[o].high])));
+      return { summary: shownPairs().map(t => `${t.variant}: ${t.outcomes.avoided} of ${t.valid} valid pairs avoided`).join("; "), columns: ["treatment", "outcome", "crashes", "crashes_by_olc", "share_of_valid", "low", "high"], rows: rows };
+    });
+
+  // ---- expected injuries --------------------------------------------------------------------------------
+
+  function benefits() {
+    const rows = [];
+    shownContrasts().forEach(c => c.injury_benefit[state.scope].forEach(b => rows.push(Object.assign({ name: c.variant }, b))));
+    shownPairs().forEach(c => c.injury_benefit.forEach(b => rows.push(Object.assign({ name: c.variant }, b))));
+    return rows;
+  }
+
+  const benefitFigure = figure("figure-benefit", "Benefit in expected injured drivers",
+    () => "Per cent fewer injured drivers per vehicle-km than with the baseline (counterfactual: of the same crashes, avoided = 0), by risk function, 95 % bootstrap over replications. Both drivers of the frontal crashes; functions of delta-v, none of OLC.",
+    function (svg, width) {
+      const rows = benefits().filter(b => !missing(b.benefit_1)), margin = { top: 10, right: 16, bottom: 48, left: 16 }, band = 40, h = band * rows.length, w = width - margin.left - margin.right;
+      const low = d3.min(rows, b => d3.min([b.benefit_1, missing(b.interval.low) ? b.benefit_1 : b.interval.low])) || 0;
+      const x = d3.scaleLinear().domain([Math.min(0, low), 1]).nice().range([0, w]), inner = svg.append("g").attr("transform", `translate(${margin.left},${margin.top})`);
+      inner.selectAll(null).data(x.ticks(6)).enter().append("line").attr("class", "gridline").attr("y2", h).attr("x1", x).attr("x2", x);
+      inner.append("line").attr("y2", h).attr("x1", x(0)).attr("x2", x(0)).style("stroke", "var(--ink)");
+      inner.append("g").attr("class", "axis").attr("transform", `translate(0,${h})`).call(d3.axisBottom(x).ticks(6).tickFormat(d3.format(".0%")).tickSizeOuter(0));
+      inner.append("text").attr("class", "axis-title").attr("x", w / 2).attr("y", h + 38).attr("text-anchor", "middle").text("fewer expected injured drivers");
+      rows.forEach((b, k) => {
+        const v = indexOf(b.name), y = band * (k + 0.5) + 8, label = inner.append("text").attr("y", y - 13);
+        label.append("tspan").style("font-weight", 600).text(b.name);
+        label.append("tspan").attr("class", "soft").text(`  ${b.level} (${b.function}): ${percent(b.benefit_1)}${b.interval.status === "value" && width > 460 ? ` (${interval(b.interval, percent)})` : ""}`);
+        if (b.interval.status === "value") inner.append("line").attr("x1", x(missing(b.interval.low) ? x.domain()[0] : b.interval.low)).attr("x2", x(missing(b.interval.high) ? 1 : b.interval.high)).attr("y1", y).attr("y2", y).style("stroke", colour(v)).style("stroke-width", 2.4);
+        inner.append("path").attr("d", symbol(v, 70)).attr("transform", `translate(${x(b.benefit_1)},${y})`).style("fill", colour(v));
+      });
+      return margin.top + h + margin.bottom;
+    },
+    function () {
+      const rows = benefits().map(b => [b.name, b.level, b.function, b.baseline, b.treatment, b.benefit_1, b.interval.low, b.interval.high, b.interval.status]);
+      return { summary: rows.map(r => `${r[0]}, ${r[1]} (${r[2]}): ${percent(r[5])}`).join("; "), columns: ["treatment", "level", "function", "expected_baseline", "expected_treatment", "benefit_1", "low", "high", "interval"], rows: rows };
+    });
+
+  // ---- pulse corridors ------------------------------------------------------------------------------------
+
+  const corridors = () => shownVariants().map(v => Object.assign({ variant: indexOf(v.variant), name: v.variant }, v.corridor[state.scope])).filter(c => c.p50.length > 0);
+  const STEP_MS = 2;
+
+  const corridorFigure = figure("figure-corridor", "Pulse corridors",
+    () => `Deceleration along the car’s x axis over time, CFC60: median and, shaded, the range from 10 to 90 % at each instant, over up to ${data.sample.pulses} sampled vehicles of each variant among ${scopeText()}. From three vehicles on.`,
+    function (svg, width) {
+      const curves = corridors();
+      const top = legend(svg, width, curves.map(c => ({ variant: c.variant, label: `${c.name} (${c.n} pulses)` })), lineMark);
+      const margin = { top: top + 4, right: 16, bottom: 48, left: 52 }, height = margin.top + Math.min(330, 140 + width * 0.35) + margin.bottom;
+      const x = d3.scaleLinear().domain([0, 150]).range([0, width - margin.left - margin.right]);
+      const y = d3.scaleLinear().domain([Math.min(0, d3.min(curves, c => d3.min(c.p10))), d3.max(curves, c => d3.max(c.p90))]).nice().range([height - margin.top - margin.bottom, 0]);
+      const inner = frame(svg, width, height, margin, x, y, "time from first contact, ms", "deceleration, g");
+      curves.forEach(c => inner.append("path").attr("d", d3.area().x((p, k) => x(k * STEP_MS)).y0((p, k) => y(c.p10[k])).y1((p, k) => y(c.p90[k]))(c.p50)).style("fill", colour(c.variant)).style("opacity", 0.16));
+      curves.forEach(c => inner.append("path").attr("d", d3.line().x((p, k) => x(k * STEP_MS)).y(y)(c.p50)).style("fill", "none").style("stroke", colour(c.variant)).style("stroke-width", 2.2).style("stroke-dasharray", DASHES[c.variant % 6]));
+      readout(svg, inner, x, y.range()[0], t => { const k = Math.round(t / STEP_MS); return [`${k * STEP_MS} ms`, ...curves.map(c => k < c.p50.length ? `${c.name}: ${fixed(c.p50[k], 1)} g (${fixed(c.p10[k], 1)} to ${fixed(c.p90[k], 1)})` : `${c.name}: –`)]; });
+      return height;
+    },
+    function () {
+      const rows = [];
+      corridors().forEach(c => c.p50.forEach((value, k) => rows.push([c.name, k * STEP_MS, c.p10[k], value, c.p90[k], c.n])));
+      return { summary: corridors().map(c => `${c.name}: ${c.n} pulses, highest median ${fixed(d3.max(c.p50), 1)} g`).join("; "), columns: ["variant", "time_ms", "p10_g", "median_g", "p90_g", "pulses"], rows: rows };
+    });
+
+  // ---- the gallery ---------------------------------------------------------------------------------------
+
+  // Both cars from above at a frame, drawn anew for each position of the slider.
+  function drawCrash(area, run, frameNumber) {
+    const width = Math.max(240, area.clientWidth), xs = [], ys = [];
+    run.vehicles.forEach(v => v.poses.forEach(p => { xs.push(p[0] - 2.6, p[0] + 2.6); ys.push(p[1] - 2.6, p[1] + 2.6); }));
+    const x0 = d3.extent(xs), y0 = d3.extent(ys), scale = Math.min(width / (x0[1] - x0[0]), 230 / (y0[1] - y0[0]));
+    const height = Math.max(120, scale * (y0[1] - y0[0])), degrees = rad => rad * 180 / Math.PI;
+    area.textContent = "";
+    const svg = d3.select(area).append("svg").attr("viewBox", `0 0 ${width} ${height}`).attr("width", width).attr("height", height).attr("role", "img")
+      .attr("aria-label", `From above, ${fixed(run.times_ms[frameNumber], 0)} ms after first contact`);
+    const world = svg.append("g").attr("transform", `translate(${width / 2},${height / 2}) scale(${scale},${-scale}) translate(${-(x0[0] + x0[1]) / 2},${-(y0[0] + y0[1]) / 2})`);
+    run.vehicles.forEach((v, role) => {
+      const p = v.poses[frameNumber], car = world.append("g").attr("transform", `translate(${p[0]},${p[1]}) rotate(${degrees(p[2])})`);
+      v.parts.forEach(part => {
+        const f = part.frames[frameNumber];
+        car.append("rect").attr("x", -f[3] / 2).attr("y", -part.width_m / 2).attr("width", f[3]).attr("height", part.width_m).attr("rx", part.radius_m)
+          .attr("transform", `translate(${f[0]},${f[1]}) rotate(${degrees(f[2])})`).style("fill", `var(--v${role ? 2 : 1})`).style("fill-opacity", part.name === "body" ? 0.18 : 0.55).style("stroke", `var(--v${role ? 2 : 1})`).style("stroke-width", 0.03);
+      });
+      car.append("text").attr("transform", "scale(1,-1)").attr("text-anchor", "middle").attr("dy", "0.35em").style("font-size", "0.7px").style("font-weight", 600).text(v.role);
+    });
+    svg.append("text").attr("x", 8).attr("y", 18).text(`${fixed(run.times_ms[frameNumber], 0)} ms`);
+  }
+
+  function gallery() {
+    const parent = document.getElementById("gallery");
+    parent.textContent = "";
+    const shown = data.gallery.filter(e => state.variants.has(indexOf(e.variant)) && (state.scenario === "" || e.scenario === state.scenario) &&
+      (state.crashType === "" || e.crash_type === state.crashType) && (state.scope === "all" || e.inside));
+    if (shown.length === 0) element(parent, "p", "No crash of the gallery is in this selection.", { class: "empty" });
+    shown.forEach(entry => {
+      const card = element(parent, "article", undefined, { class: "card crash" });
+      card.style.setProperty("--colour", colour(indexOf(entry.variant)));
+      element(card, "h3", `${entry.variant}: ${entry.why}`);
+      element(card, "p", `${readable(entry.scenario)}, ${entry.crash_type}, crash ${entry.crash_id}${missing(entry.olc_g) ? "" : `, OLC ${fixed(entry.olc_g, 1)} g`}, ${entry.inside ? "inside the validated range" : "outside the validated range: extrapolated"}`, { class: "note" });
+      if (!entry.run) { element(card, "p", `Could not be simulated again: ${entry.failed}`, { class: "warning" }); return; }
+      const run = entry.run, area = element(card, "div", undefined, { class: "area" }), controls = element(card, "div", undefined, { class: "player" });
+      const button = element(controls, "button", "Play", { type: "button", "aria-label": `Play crash ${entry.crash_id}` });
+      const slider = element(controls, "input", undefined, { type: "range", min: 0, max: run.times_ms.length - 1, value: 0, "aria-label": `Time in crash ${entry.crash_id}` });
+      element(card, "p", `${fixed(run.closing_speed_km_h, 0)} km/h closing, offset ${fixed(run.offset_mm, 0)} mm, angle ${fixed(run.angle_deg, 0)}°. ` + run.vehicles.map(v => `${v.role}: ${readable(v.name)}, delta-v ${fixed(v.severity.delta_v_km_h, 0)} km/h, ${v.severity.olc_status === "value" ? `OLC ${fixed(v.severity.olc_g, 1)} g` : readable(v.severity.olc_status)}`).join("; ") + `. Simulated again when the report was made: ${entry.match}.`, { class: "note" });
+      let timer = null;
+      const show = k => { slider.value = k; drawCrash(area, run, k); };
+      const stop = () => { if (timer) timer.stop(); timer = null; button.textContent = "Play"; };
+      slider.oninput = () => { stop(); show(Number(slider.value)); };
+      button.onclick = () => {
+        if (timer) { stop(); return; }
+        let k = Number(slider.value) >= run.times_ms.length - 1 ? 0 : Number(slider.value);
+        button.textContent = "Stop";
+        timer = d3.interval(() => { if (k >= run.times_ms.length - 1) stop(); else show(++k); }, 70);
+      };
+      show(0);
+    });
+  }
+
   // ---- cards and tables --------------------------------------------------------------------------------
 
   function cards() {
     const parent = document.getElementById("cards");
     parent.textContent = "";
-    slice().variants.forEach((v, k) => {
+    shownVariants().forEach(v => {
+      const k = indexOf(v.variant);
       const card = element(parent, "article", undefined, { class: "card", "data-variant": v.variant });
       card.style.setProperty("--colour", colour(k));
       const head = element(card, "h3", v.variant), r = v.frontal_crashes_per_million_km, olc = v.olc_g[state.scope];
@@ -367,7 +636,7 @@
     });
     const filtered = state.scenario !== "" || state.crashType !== "";
     document.getElementById("slice-answer").textContent = filtered ? slice().answer : "";
-    const total = d3.sum(slice().variants, v => v.frontal_crashes);
+    const total = d3.sum(shownVariants(), v => v.frontal_crashes);
     document.getElementById("status").textContent = `${integer(total)} frontal crashes selected`;
   }
 
@@ -386,7 +655,7 @@
 
   const quantileTable = tableSection("quantiles", "olc_quantiles", function () {
     const rows = [];
-    slice().variants.forEach(v => ["all", "inside"].forEach(scope => {
+    shownVariants().forEach(v => ["all", "inside"].forEach(scope => {
       const d = v.olc_g[scope];
       rows.push([v.variant, scope === "all" ? "all" : "inside range", d.n, d.censored, fixed(d.mean, 1), fixed(d.sd, 1),
         ...[d.min, d.q25, d.median, d.q75, d.p90, d.p95, d.max].map(e => estimate(e, 1))]);
@@ -400,7 +669,7 @@
   const contrastTable = tableSection("contrasts", "paired_replications", function () {
     const rows = [];
     const two = value => fixed(value, 2), one = value => fixed(value, 1);
-    slice().contrasts.forEach(c => {
+    shownContrasts().forEach(c => {
       const o = c.olc_g[state.scope];
       const add = (what, value, i, poisson, p, holm) => rows.push([c.variant, what, value, i, poisson, p, holm]);
       add("rate ratio of frontal crashes", fixed(c.rate_ratio, 2), interval(c.rate_ratio_bootstrap, two), interval(c.rate_ratio_poisson, two), pValue(c.rate_p), pValue(c.rate_p_holm));
@@ -408,6 +677,10 @@
       add("difference in mean OLC, g", estimate(o.mean_difference, 1), interval(o.mean_interval, one), "", "", "");
       add("difference in 90 % OLC, g", estimate(o.p90_difference, 1), interval(o.p90_interval, one), "", "", "");
       add("Cliff’s δ of OLC (Mann–Whitney)", fixed(o.cliffs_delta, 2), interval(o.cliffs_delta_interval, two), "", pValue(o.mann_whitney_p), pValue(o.mann_whitney_p_holm));
+      const speed = c.closing_speed_m_s[state.scope], dv = c.delta_v_m_s[state.scope], km_h = n => fixed(3.6 * n, 1);
+      const change = e => missing(e) ? "–" : km_h(e.value);
+      add("difference in median delta-v, km/h (Mann–Whitney)", change(dv.median_difference), interval(dv.median_interval, km_h), "", pValue(dv.mann_whitney_p), pValue(dv.mann_whitney_p_holm));
+      add("difference in median closing speed, km/h (Mann–Whitney)", change(speed.median_difference), interval(speed.median_interval, km_h), "", pValue(speed.mann_whitney_p), pValue(speed.mann_whitney_p_holm));
       add("largest distance of the distributions (KS)", fixed(o.kolmogorov_smirnov_d, 2), "", "", pValue(o.kolmogorov_smirnov_p), "");
     });
     return {
@@ -433,10 +706,32 @@
     return { columns: [{ name: "validity", text: true }, ...d3.merge(data.variants.map(v => [{ name: v.name }, { name: "share" }]))], rows: rows };
   });
 
+  const injuryTable = tableSection("injuries", "expected_injuries", function () {
+    const rows = [];
+    shownVariants().forEach(v => v.expected_injured_drivers[state.scope].forEach(i => {
+      const risk = data.risks.find(r => r.name === i.function && r.level === i.level);
+      rows.push([v.variant, i.level, i.function, i.drivers, i.unknown, fixed(i.expected, 2), rate(i.per_million_km), interval(i.interval, rate), `${risk.source}; ${risk.note}`]);
+    }));
+    return {
+      columns: [{ name: "variant", text: true }, { name: "level", text: true }, { name: "function", text: true }, { name: "drivers" }, { name: "unknown" }, { name: "expected injured" }, { name: "per 10⁶ veh-km" }, { name: "95 % bootstrap" }, { name: "source", text: true }],
+      rows: rows
+    };
+  });
+
+  const precisionTable = tableSection("precision", "", function () {
+    const rows = [], line = (name, what, p, replications) => rows.push([name, what, replications, percent(p.relative_1), integer(p.replications_for_10_percent)]);
+    shownVariants().forEach(v => {
+      line(v.variant, "frontal crash rate", v.frontal_crashes_per_million_km.precision, v.replications);
+      line(v.variant, "mean OLC", v.olc_g[state.scope].mean_precision, v.replications);
+    });
+    shownContrasts().forEach(c => line(c.variant, "rate ratio", c.rate_ratio_precision, c.treatment_replications));
+    return { columns: [{ name: "variant", text: true }, { name: "figure", text: true }, { name: "replications" }, { name: "half-width reached" }, { name: "replications for ±10 %" }], rows: rows };
+  });
+
   const exposureTable = tableSection("exposure", "exposure_and_rates", function () {
     const rows = [];
     data.scenarios.forEach(name => data.slices.filter(s => s.scenario === name && s.crash_type === null).forEach(s => s.variants.forEach(v =>
-      rows.push([name, v.variant, v.replications, fixed(v.vehicle_km, 1), fixed(v.vehicle_h, 1), v.crashes, v.frontal_crashes, rate(v.frontal_crashes_per_million_km.value), fixed(v.frontal_crashes_per_million_km.dispersion, 2)]))));
+      state.variants.has(indexOf(v.variant)) && rows.push([name, v.variant, v.replications, fixed(v.vehicle_km, 1), fixed(v.vehicle_h, 1), v.crashes, v.frontal_crashes, rate(v.frontal_crashes_per_million_km.value), fixed(v.frontal_crashes_per_million_km.dispersion, 2)]))));
     return {
       columns: [{ name: "scenario", text: true }, { name: "variant", text: true }, ...["replications", "vehicle-km", "vehicle-h", "crashes", "frontal", "frontal per 10⁶ km", "dispersion"].map(name => ({ name: name }))],
       rows: rows
@@ -455,7 +750,7 @@
 
   function design() {
     const parent = document.getElementById("design"), study = data.study;
-    const words = { paired_seeds: "paired seeds: every variant runs the same demand and seeds, replications are compared pair by pair", independent: "independent: every variant has its own seeds" };
+    const words = { paired_seeds: "paired seeds: every variant runs the same demand and seeds, replications are compared pair by pair", independent: "independent: every variant has its own seeds", counterfactual: "counterfactual: every crash of the baseline is run again from a checkpoint before contact, with each treatment and once unchanged" };
     facts(parent, [
       ["Design", words[study.design] || study.design],
       ["Replications", `${study.replications} planned per scenario and variant${data.unfinished ? `; ${data.unfinished} not finished and not counted` : ""}`],
@@ -492,10 +787,10 @@
 
   // ---- filters, theme, size ----------------------------------------------------------------------------
 
-  const drawings = [rateFigure, ecdfFigure, scatterFigure, mapFigure];
+  const drawings = [rateFigure, ecdfFigure, differenceFigure, scatterFigure, mapFigure, siteFigure, flowFigure, benefitFigure, corridorFigure, gallery].filter(Boolean);
   function update() {
     cards();
-    [quantileTable, contrastTable, validityTable].forEach(draw => draw());
+    [exposureTable, quantileTable, contrastTable, injuryTable, precisionTable, validityTable].forEach(draw => draw());
     drawings.forEach(draw => draw());
   }
 
@@ -518,6 +813,18 @@
   options("scenario", "all", data.scenarios).onchange = event => { state.scenario = event.target.value; update(); };
   options("crash-type", "all frontal", data.crash_types).onchange = event => { state.crashType = event.target.value; update(); };
   document.querySelectorAll("input[name=scope]").forEach(input => { input.onchange = () => { state.scope = input.value; update(); }; });
+  data.variants.forEach((v, k) => {
+    const label = element(document.getElementById("variants"), "label"), box = element(label, "input", undefined, { type: "checkbox", checked: "", value: v.name });
+    element(label, "span", undefined, { class: "swatch" }).style.setProperty("--colour", colour(k));
+    label.appendChild(document.createTextNode(v.name));
+    box.onchange = () => {
+      // The last one stays: a page of nothing helps nobody.
+      if (!box.checked && state.variants.size === 1) { box.checked = true; return; }
+      if (box.checked) state.variants.add(k); else state.variants.delete(k);
+      update();
+    };
+  });
+  if (!flowFigure) document.getElementById("section-flow").remove();
   document.getElementById("filters").onsubmit = event => event.preventDefault();
   const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");
   theme(prefersDark.matches);
@@ -530,8 +837,9 @@
     cancelAnimationFrame(pending);
     pending = requestAnimationFrame(() => drawings.forEach(draw => draw()));
   });
+  // Paper shows everything: tables and SQL unfolded, as far as they are filled.
+  window.addEventListener("beforeprint", () => theme(false));
   design();
   reproduce();
-  exposureTable();
   update();
 })();

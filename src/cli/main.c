@@ -16,6 +16,7 @@ static const command COMMAND[] = {
     {"run", cmd_run, "simulate a study: traffic, crashes, pulses, into a database"},
     {"compare", cmd_compare, "compare the variants of a study"},
     {"report", cmd_report, "write the comparison as one HTML file with figures"},
+    {"plot", cmd_plot, "draw one figure for a paper, as SVG or PDF"},
     {"sql", cmd_sql, "ask the database"},
     {"check", cmd_check, "see whether a database is whole"},
     {"crash", cmd_crash, "simulate one crash, against a barrier or another car"},

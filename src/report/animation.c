@@ -163,7 +163,7 @@ static json_t *times_json(const cp_crash_film *film)
     return times;
 }
 
-static cp_status run_json(const cp_animated_run *run, json_t **json, cp_error *error)
+cp_status cp_animation_run_json(const cp_animated_run *run, json_t **json, cp_error *error)
 {
     if (run->film->frame_count == 0)
         return cp_fail(error, CP_BAD_INPUT, "nothing was filmed of a crash to animate");
@@ -201,7 +201,7 @@ static cp_status page_json(const cp_animated_run *run, size_t run_count, json_t 
     cp_status status = CP_OK;
     for (size_t k = 0; status == CP_OK && k < run_count; k++) {
         json_t *one = NULL;
-        status = run_json(&run[k], &one, error);
+        status = cp_animation_run_json(&run[k], &one, error);
         if (status == CP_OK)
             json_array_append_new(runs, one);
     }

@@ -4,6 +4,8 @@
 
 #include "crash/crash_simulation.h"
 
+#include <jansson.h>
+
 /* A page of its own that shows crashes from above over time, with acceleration, velocity and
  * displacement beside them. */
 
@@ -17,6 +19,11 @@ typedef struct cp_animated_run {
     const cp_crash_result *result;
     const cp_crash_film *film;
 } cp_animated_run;
+
+/* A filmed crash as the page's script takes it: what it is, poses and parts over time, pulses.
+ * *json is the caller's to release. Errors: CP_NO_MEMORY, CP_BAD_INPUT for a run without frames. */
+CP_MUST_CHECK cp_status cp_animation_run_json(const cp_animated_run *run, json_t **json,
+                                              cp_error *error);
 
 /* Write the page: the first run in full, a second one laid over it, both from the first contact on
  * in a's axes. The file needs nothing but itself. Errors: CP_NO_MEMORY, CP_IO_FAILED, CP_BAD_INPUT

@@ -9,6 +9,9 @@
     X(configuration_map)                                                                           \
     X(validity)                                                                                    \
     X(paired_replications)                                                                         \
+    X(crash_sites)                                                                                 \
+    X(counterfactual_outcomes)                                                                     \
+    X(expected_injuries)                                                                           \
     X(worst_crashes)                                                                               \
     X(reproducibility)
 

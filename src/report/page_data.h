@@ -6,13 +6,16 @@
 
 #include <jansson.h>
 
-/* Vehicles drawn at most; of more, every k-th is drawn (tables and statistics use all). */
-#define CP_PAGE_VEHICLES_MAX 50000
+/* Frontal crashes drawn at most, in about; of more, a random sample by the study's seed (tables and
+ * statistics use all). */
+#define CP_PAGE_CRASHES_MAX 2500
 
-/* Everything the page shows, as one JSON object: the study, a comparison with its answer for every
- * choice of scenario and crash type, the vehicles to draw in columns, and the SQL. answer_all: the
- * sentence over everything; the caller frees it and releases *page. */
-CP_MUST_CHECK cp_status cp_page_data(const cp_study_data *data, size_t baseline,
+/* Everything the page shows, as one JSON object: the study, a comparison with its answer,
+ * distribution functions and pulse corridors for every choice of scenario and crash type, the
+ * crashes to draw in columns, networks, single crashes simulated again, risk functions, and the
+ * SQL. store: the database data was read from. answer_all: the sentence over everything; the caller
+ * frees it and releases *page. */
+CP_MUST_CHECK cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseline,
                                      const cp_comparison_options *options, json_t **page,
                                      char **answer_all, cp_error *error);
 

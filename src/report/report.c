@@ -65,7 +65,7 @@ cp_status cp_report_write(cp_store *store, const char *baseline, const char *pat
     if (status == CP_OK)
         status = cp_study_data_variant(&data, baseline, &variant, error);
     if (status == CP_OK)
-        status = cp_page_data(&data, variant, &options, &page_data, &answer, error);
+        status = cp_page_data(store, &data, variant, &options, &page_data, &answer, error);
     if (status == CP_OK)
         status = write_page(&data, page_data, answer, path, error);
     json_decref(page_data);

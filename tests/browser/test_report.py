@@ -20,7 +20,11 @@ ARGS = parser.parse_args()
 OUTPUT = pathlib.Path(ARGS.output)
 REPORT = OUTPUT / "report.html"
 
-FIGURES = ["figure-rate", "figure-ecdf", "figure-scatter", "figure-map"]
+FIGURES = ["figure-rate", "figure-ecdf", "figure-difference", "figure-scatter", "figure-map", "figure-sites",
+           "figure-benefit"]
+# In this order, from the question to what repeats the study.
+SECTIONS = ["h-variants", "h-design", "h-rates", "h-quantiles", "h-contrasts", "h-where", "h-injuries", "h-pulses",
+            "h-validity", "h-reproduce"]
 
 # What the downloads would write, caught instead of saved.
 CATCH_DOWNLOADS = """
@@ -92,7 +96,48 @@ class Report(unittest.TestCase):
         self.assertIn("failed_to_see with probability 0.05", answer)
         self.assertIn("conditional on the assumed driver errors", answer)
         self.assertIn("Copyright 2010-2017 Mike Bostock", self.page)
-        self.assertNotIn("injur", self.page.split('id="data"')[0].lower())
+        # Injuries have a section of their own; none is said of OLC.
+        for section in ("h-rates", "h-quantiles", "h-contrasts"):
+            text = self.browser.run("return document.getElementById(arguments[0]).closest('section').textContent", section)
+            self.assertNotIn("injur", text.lower())
+        sections = self.browser.run("return Array.from(document.querySelectorAll('main section')).map(s => s.getAttribute('aria-labelledby'))")
+        self.assertEqual(sections, SECTIONS)
+
+    def test_variants_can_be_left_out(self):
+        def count(selector):
+            return self.browser.run("return document.querySelectorAll(arguments[0]).length", selector)
+        points = count("#figure-scatter .point")
+        self.browser.run("document.querySelector(\"#variants input[value='aeb']\").click()")
+        baseline = self.count("SELECT count(*) FROM frontal_vehicle WHERE olc_g IS NOT NULL AND variant = 'baseline'")
+        self.assertEqual(count("#figure-scatter .point"), baseline)
+        self.assertLess(baseline, points)
+        self.assertEqual(count("#cards .card"), 1)
+        self.assertEqual(count("#table-contrasts tbody tr"), 0)
+        # The last one cannot be taken away.
+        self.browser.run("document.querySelector(\"#variants input[value='baseline']\").click()")
+        self.assertEqual(count("#cards .card"), 1)
+        self.browser.run("document.querySelector(\"#variants input[value='aeb']\").click()")
+        self.assertEqual(count("#figure-scatter .point"), points)
+
+    def test_sites_and_injuries_agree_with_sql(self):
+        self.choose("left_turn", "front-side")
+        sites = self.browser.run("return document.querySelectorAll('#figure-sites .site').length")
+        self.assertEqual(sites, self.count("SELECT count(*) FROM crash_list WHERE scenario = 'left_turn' AND crash_type = 'front-side'"))
+        self.choose()
+        wanted = self.count("SELECT sum(1 / (1 + exp(3.761 - 0.136 * w.delta_v_m_s / 0.44704))) FROM crash_vehicle w "
+                            "JOIN variant v ON v.id = w.variant_id WHERE v.name = 'aeb' AND w.crash_type LIKE 'front-%'")
+        shown = self.browser.run("""
+            const row = Array.from(document.querySelectorAll("#table-injuries tbody tr")).map(r => Array.from(r.children).map(c => c.textContent))
+                .find(r => r[0] === "aeb" && r[1] === "MAIS2+" && r[2] === "Malliaris");
+            return row[5];""")
+        self.assertEqual(shown, f"{wanted:.2f}")
+
+    def test_pointer_reads_values(self):
+        text = self.browser.run("""
+            const rect = document.querySelector("#figure-ecdf rect[style*='transparent']"), box = rect.getBoundingClientRect();
+            rect.dispatchEvent(new MouseEvent("mousemove", {clientX: box.left + box.width / 2, clientY: box.top + 20, bubbles: true}));
+            return document.querySelector("#figure-ecdf .readout").textContent;""")
+        self.assertRegex(text, r"g.*baseline: \d+ %.*aeb: \d+ %")
 
     def test_filters_agree_with_sql(self):
         scenarios = [""] + [row[0] for row in self.db.execute("SELECT name FROM scenario")]
@@ -134,7 +179,7 @@ class Report(unittest.TestCase):
             "const done = arguments[0]; Promise.all(window.caught.map(b => b.text())).then(done);"})
         self.assertEqual(len(texts), 2 * len(FIGURES))
         ecdf = texts[2].strip().split("\n")
-        self.assertEqual(ecdf[0], "variant,olc_g,share")
+        self.assertEqual(ecdf[0], "variant,olc_g,share,band_low,band_high")
         first_aeb = next(line for line in ecdf if line.startswith("aeb"))
         self.assertEqual(first_aeb.split(",")[1], "", "a censored curve starts above 0, without a value")
         self.assertGreater(float(first_aeb.split(",")[2]), 0.0)
@@ -171,7 +216,7 @@ class Report(unittest.TestCase):
                 outside = self.browser.run("""
                     return Array.from(document.querySelectorAll("figure svg text")).filter(t => {
                         const own = t.getBoundingClientRect(), box = t.closest("figure").getBoundingClientRect();
-                        return own.left < box.left || own.right > box.right; }).length""")
+                        return own.width > 0 && (own.left < box.left || own.right > box.right); }).length""")
                 self.assertEqual(outside, 0, "text of a figure is cut off")
                 height = self.browser.run("return document.documentElement.scrollHeight")
                 self.browser.resize(width, height)

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef REPORT_PLOT_H
+#define REPORT_PLOT_H
+
+#include "core/error.h"
+#include "report/comparison.h"
+
+/* Figures for papers, drawn by gnuplot without a browser. */
+
+/* X(kind, name on the command line, what it shows). */
+#define CP_PLOT_KINDS(X)                                                                           \
+    X(CP_PLOT_RATES, "rates", "frontal crash rates with their intervals")                          \
+    X(CP_PLOT_OLC, "olc", "distribution functions of OLC with their bands")                        \
+    X(CP_PLOT_DIFFERENCE, "difference", "change of OLC against the baseline with intervals")       \
+    X(CP_PLOT_SEVERITY, "severity", "OLC against closing speed")                                   \
+    X(CP_PLOT_MAP, "map", "crash configurations: offset, angle, closing speed")                    \
+    X(CP_PLOT_SITES, "sites", "where they crash, in the plane of the network")                     \
+    X(CP_PLOT_OUTCOMES, "outcomes", "counterfactual outcomes of each treatment")                   \
+    X(CP_PLOT_BENEFIT, "benefit", "benefit in expected injured drivers")                           \
+    X(CP_PLOT_CORRIDOR, "corridor", "pulse corridors of each variant")
+
+typedef enum cp_plot_kind {
+#define CP_PLOT_NAME(kind, name, what) kind,
+    CP_PLOT_KINDS(CP_PLOT_NAME)
+#undef CP_PLOT_NAME
+        CP_PLOT_KIND_COUNT
+} cp_plot_kind;
+
+/* Draw a comparison to path, whose ending says how: .svg or .pdf. store: of the pulses. Errors:
+ * CP_BAD_INPUT for another ending, for nothing to draw, and when gnuplot is missing; CP_RUN_FAILED
+ * with gnuplot's words; CP_IO_FAILED. */
+CP_MUST_CHECK cp_status cp_plot_write(cp_store *store, const cp_study_data *data,
+                                      const cp_comparison *comparison, int scope, cp_plot_kind kind,
+                                      const char *path, cp_error *error);
+
+/* The gnuplot script that does it, data inside, without the lines that name terminal and output;
+ * the caller frees. Errors: as above. */
+CP_MUST_CHECK cp_status cp_plot_script(cp_store *store, const cp_study_data *data,
+                                       const cp_comparison *comparison, int scope,
+                                       cp_plot_kind kind, char **script, cp_error *error);
+
+#endif

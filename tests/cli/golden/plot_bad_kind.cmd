@@ -1,0 +1,1 @@
+"$crashpulse" plot "$db" pie --output x.svg

@@ -53,7 +53,7 @@
 
   const KIND = name => name.replace(/_(left|right)$/, "");
   // From below to above: what collapses slides under the body.
-  const LAYERS = ["corner", "engine", "longitudinal", "crash_box", "body", "cross_member"];
+  const LAYERS = ["upper", "corner", "engine", "longitudinal", "crash_box", "body", "cross_member"];
   const crushed = d3.scaleSequential(d3.interpolateYlOrRd).domain([-0.15, 0.95]).clamp(true);
   const degrees = rad => rad * 180 / Math.PI;
   const scene = { svg: null, world: null, cars: [] };

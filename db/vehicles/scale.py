@@ -30,13 +30,14 @@ KINDS = {
     LENGTH: "longitudinal_length_m longitudinal_collapse_begin_m longitudinal_collapse_end_m "
             "crash_box_length_m crash_box_collapse_begin_m crash_box_collapse_end_m "
             "engine_gap_front_m engine_gap_firewall_m corner_gap_m corner_collapse_begin_m "
-            "corner_collapse_end_m",
+            "corner_collapse_end_m upper_gap_m upper_collapse_begin_m upper_collapse_end_m",
     WIDTH: "longitudinal_y_m cross_member_half_width_m engine_width_m corner_width_m",
     MASS: "longitudinal_mass_kg crash_box_mass_kg cross_member_mass_kg engine_mass_kg "
-          "corner_mass_kg contact_stiffness_kn_m body_stiffness_kn_m",
+          "contact_stiffness_kn_m body_stiffness_kn_m",
     FORCE: "longitudinal_collapse_begin_kn longitudinal_collapse_end_kn crash_box_collapse_begin_kn "
            "crash_box_collapse_end_kn engine_mount_yield_kn corner_collapse_begin_kn "
-           "corner_collapse_end_kn engine_mount_damping_kn_s_m member_damping_kn_s_m",
+           "corner_collapse_end_kn upper_collapse_begin_kn upper_collapse_end_kn "
+           "engine_cradle_kn engine_mount_damping_kn_s_m member_damping_kn_s_m",
     MOMENT: "longitudinal_bending_kn_m cross_member_bending_kn_m",
     SLOPE: "engine_mount_kn_m firewall_stiffness_kn_m stop_stiffness_kn_m",
 }
@@ -86,6 +87,8 @@ def scaled(base, values, mass, length, width, front, mass_source):
         "width_m": (width, "assumed: typical outline"),
         "yaw_inertia_kg_m2": (old["yaw_inertia_kg_m2"] * mass_ratio * gyration,
                               f"{base} x {mass_ratio * gyration:.3f} (mass x (length2 + width2))"),
+        "unload_factor_1": (max(1.0, old["unload_factor_1"] * min(1.0, front ** 2)),
+                            f"{base} x {min(1.0, front ** 2):.3f} (stiffness the time step stands)"),
         "cg_to_front_m": (share * length, f"{share:.3f} of the length, as {base}"),
     }
     for name, (unit, value) in values.items():

@@ -2,23 +2,21 @@
 #ifndef CALIBRATE_CALIBRATION_H
 #define CALIBRATE_CALIBRATION_H
 
-#include "calibrate/fit_file.h"
-#include "calibrate/pulse_objective.h"
-#include "calibrate/validation.h"
+#include "calibrate/cross_validation.h"
 
-/* Fitting a vehicle model to a reference: a global search (pagmo), then Nelder-Mead from its best.
- * The objective is the fit file's: the mean absolute OLC error over the reference's cases, or the
- * weighted mean total error over its pulses. */
+/* Fitting a vehicle model to a reference: the search of fit_search.h over all cases, then the
+ * cross-validations the fit file asks for. The objective is the fit file's: the mean absolute OLC
+ * error over the reference's cases (and how far the marks of its pulse leave their bounds, if
+ * bounds are given), or the weighted mean total error over its pulses. */
 
 typedef struct cp_calibration {
-    cp_vehicle_model model;      /* the fitted one */
-    double objective;            /* its value: g for olc, total error for pulse */
-    double *olc_g;               /* owned: its OLC a case, 0 where left-censored */
-    cp_pulse_error *pulse_error; /* owned: its error a pulse; NULL by objective olc */
+    cp_vehicle_model model; /* the fitted one */
+    double objective;       /* its value: g for olc, total error for pulse */
+    cp_fit_work work;       /* owned: what it does in every case */
     cp_validation validation;
-    size_t fold_count;
-    double *held_out_g; /* owned: a case's OLC by the model fitted without its fold; NULL: none */
-    cp_validation cross_validation;
+    double mark[CP_MARK_COUNT]; /* of its pulse, where the fit bounds them */
+    size_t cross_count;
+    cp_cross_validation cross[CP_CROSS_KINDS]; /* owned */
 } cp_calibration;
 
 /* Run the fit, with progress on stderr. A killed fit goes on from its state file. Writes nothing

@@ -50,6 +50,8 @@ static void fit_lengths(cp_vehicle_model *m)
     double corner_length_m = m->cross_member_depth_m + m->crash_box_length_m +
                              m->longitudinal_length_m - m->corner_gap_m;
     m->corner_collapse_end_m = fmin(m->corner_collapse_end_m, corner_length_m);
+    double upper_length_m = corner_length_m + m->corner_gap_m - m->upper_gap_m;
+    m->upper_collapse_end_m = fmin(m->upper_collapse_end_m, upper_length_m);
     double bay_m = m->crash_box_length_m + m->longitudinal_length_m - m->engine_gap_firewall_m;
     m->engine_gap_front_m = fmin(m->engine_gap_front_m, bay_m - smallest_engine_m);
     m->cross_member_half_width_m = fmin(m->cross_member_half_width_m, 0.5 * m->width_m);

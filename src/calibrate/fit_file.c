@@ -24,6 +24,22 @@ typedef struct yaml_range {
     char *reason;
 } yaml_range;
 
+typedef struct yaml_bounds {
+    char *min;
+    char *max;
+} yaml_bounds;
+
+typedef struct yaml_plausible {
+    char *speed_km_h;
+    char *offset_mm;
+    char *angle_deg;
+    yaml_bounds *t_v0_ms;
+    yaml_bounds *crush_mm;
+    yaml_bounds *peak_g;
+    yaml_bounds *rebound_m_s;
+    char *source;
+} yaml_plausible;
+
 typedef struct yaml_fit {
     char *fit;
     char *description;
@@ -41,7 +57,12 @@ typedef struct yaml_fit {
     char *global_time_step_s;
     char *local_time_step_s;
     char *local_evaluations;
+    char *starts;
+    char *slope_evaluations;
     char *folds;
+    char **leave_out;
+    unsigned leave_out_count;
+    yaml_plausible *plausible;
     char *threads;
     yaml_unknown *unknowns;
     unsigned unknowns_count;
@@ -63,6 +84,26 @@ static const cyaml_schema_field_t RANGE_FIELDS[] = {
     TEXT(offset_max_mm, yaml_range),  TEXT(angle_max_deg, yaml_range),
     TEXT(reason, yaml_range),         CYAML_FIELD_END};
 
+static const cyaml_schema_field_t BOUNDS_FIELDS[] = {TEXT(min, yaml_bounds), TEXT(max, yaml_bounds),
+                                                     CYAML_FIELD_END};
+
+#define OPTIONAL_BOUNDS(key)                                                                       \
+    CYAML_FIELD_MAPPING_PTR(#key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_plausible, key,   \
+                            BOUNDS_FIELDS)
+
+static const cyaml_schema_field_t PLAUSIBLE_FIELDS[] = {TEXT(speed_km_h, yaml_plausible),
+                                                        OPTIONAL_TEXT(offset_mm, yaml_plausible),
+                                                        OPTIONAL_TEXT(angle_deg, yaml_plausible),
+                                                        OPTIONAL_BOUNDS(t_v0_ms),
+                                                        OPTIONAL_BOUNDS(crush_mm),
+                                                        OPTIONAL_BOUNDS(peak_g),
+                                                        OPTIONAL_BOUNDS(rebound_m_s),
+                                                        TEXT(source, yaml_plausible),
+                                                        CYAML_FIELD_END};
+
+static const cyaml_schema_value_t WORD_VALUE = {
+    CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char, 0, CYAML_UNLIMITED)};
+
 static const cyaml_schema_field_t FIT_FIELDS[] = {
     TEXT(fit, yaml_fit),
     OPTIONAL_TEXT(description, yaml_fit),
@@ -81,7 +122,13 @@ static const cyaml_schema_field_t FIT_FIELDS[] = {
     OPTIONAL_TEXT(global_time_step_s, yaml_fit),
     OPTIONAL_TEXT(local_time_step_s, yaml_fit),
     OPTIONAL_TEXT(local_evaluations, yaml_fit),
+    OPTIONAL_TEXT(starts, yaml_fit),
+    OPTIONAL_TEXT(slope_evaluations, yaml_fit),
     OPTIONAL_TEXT(folds, yaml_fit),
+    CYAML_FIELD_SEQUENCE("leave_out", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit, leave_out,
+                         &WORD_VALUE, 1, 3),
+    CYAML_FIELD_MAPPING_PTR("plausible", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit,
+                            plausible, PLAUSIBLE_FIELDS),
     OPTIONAL_TEXT(threads, yaml_fit),
     CYAML_FIELD_SEQUENCE("unknowns", CYAML_FLAG_POINTER, yaml_fit, unknowns, &UNKNOWN_VALUE, 1,
                          CP_UNKNOWNS_MAX),
@@ -119,6 +166,11 @@ static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp
         status = read_count(file, "local_evaluations", yaml->local_evaluations, 0, 1e7, 1000,
                             &fit->local_evaluations, error);
     if (status == CP_OK)
+        status = read_count(file, "starts", yaml->starts, 1, 100, 1, &fit->starts, error);
+    if (status == CP_OK)
+        status = read_count(file, "slope_evaluations", yaml->slope_evaluations, 0, 1e7, 0,
+                            &fit->slope_evaluations, error);
+    if (status == CP_OK)
         status = read_count(file, "folds", yaml->folds, 0, 50, 0, &fit->folds, error);
     if (status == CP_OK)
         status = read_count(file, "threads", yaml->threads, 1, 64, 1, &threads, error);
@@ -130,6 +182,80 @@ static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp
                                 &fit->local_time_step_s, error);
     fit->seed = (uint32_t)seed;
     fit->threads = (int)threads;
+    return status;
+}
+
+// Variables of which one level at a time is left out.
+static cp_status read_leave_out(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+                                cp_error *error)
+{
+    static const char *const WORD[4] = {NULL, "speed", "offset", "angle"};
+    for (unsigned row = 0; row < yaml->leave_out_count; row++) {
+        int kind = 1;
+        while (kind < 4 && strcmp(yaml->leave_out[row], WORD[kind]) != 0)
+            kind++;
+        char key[32];
+        snprintf(key, sizeof key, "leave_out[%u]", row);
+        if (kind == 4)
+            return cp_yaml_fail(file, error, key, "must be speed, offset or angle, found '%s'",
+                                yaml->leave_out[row]);
+        if (fit->leave_out[kind])
+            return cp_yaml_fail(file, error, key, "'%s' is given twice", yaml->leave_out[row]);
+        fit->leave_out[kind] = true;
+    }
+    return CP_OK;
+}
+
+// Bounds of one mark of the pulse.
+static cp_status read_mark(const cp_yaml_file *file, int mark, const yaml_bounds *yaml,
+                           cp_plausibility *guard, cp_error *error)
+{
+    if (yaml == NULL)
+        return CP_OK;
+    const cp_mark_kind *kind = &CP_MARK_KIND[mark];
+    char key[64];
+    snprintf(key, sizeof key, "plausible.%s.min", kind->key);
+    cp_status status = cp_yaml_number(file, key, yaml->min, 0, 1e4, &guard->min[mark], error);
+    snprintf(key, sizeof key, "plausible.%s.max", kind->key);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, key, yaml->max, 0, 1e4, &guard->max[mark], error);
+    if (status == CP_OK && guard->max[mark] <= guard->min[mark])
+        status = cp_yaml_fail(file, error, key, "must be above min = %g, found %s",
+                              guard->min[mark], yaml->max);
+    guard->min[mark] *= kind->si_per_unit;
+    guard->max[mark] *= kind->si_per_unit;
+    guard->bounded[mark] = true;
+    return status;
+}
+
+static cp_status read_plausible(const cp_yaml_file *file, const yaml_plausible *yaml, cp_fit *fit,
+                                cp_error *error)
+{
+    if (yaml == NULL)
+        return CP_OK;
+    if (fit->objective != CP_FIT_OLC)
+        return cp_yaml_fail(file, error, "plausible", "goes with objective olc");
+    cp_plausibility *guard = &fit->plausible;
+    guard->given = true;
+    cp_status status = cp_yaml_number(file, "plausible.speed_km_h", yaml->speed_km_h, 1, 300,
+                                      &guard->speed_km_h, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "plausible.offset_mm", yaml->offset_mm, -3000, 3000,
+                                &guard->offset_mm, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "plausible.angle_deg", yaml->angle_deg, -90, 90,
+                                &guard->angle_deg, error);
+    const yaml_bounds *bounds[CP_MARK_COUNT] = {[CP_MARK_T_V0] = yaml->t_v0_ms,
+                                                [CP_MARK_CRUSH] = yaml->crush_mm,
+                                                [CP_MARK_PEAK] = yaml->peak_g,
+                                                [CP_MARK_REBOUND] = yaml->rebound_m_s};
+    for (int mark = 0; status == CP_OK && mark < CP_MARK_COUNT; mark++)
+        status = read_mark(file, mark, bounds[mark], guard, error);
+    if (status == CP_OK &&
+        (yaml->source[0] == '\0' || strlen(yaml->source) >= sizeof guard->source))
+        status = cp_yaml_fail(file, error, "plausible.source", "must have 1 to %zu characters",
+                              sizeof guard->source - 1);
+    snprintf(guard->source, sizeof guard->source, "%s", yaml->source);
     return status;
 }
 
@@ -202,6 +328,8 @@ static cp_status read_objective(const cp_yaml_file *file, const yaml_fit *yaml, 
                             by_pulse ? "goes with objective olc"
                                      : "is missing: objective olc needs the OLC values to fit");
     fit->objective = by_pulse ? CP_FIT_PULSE : CP_FIT_OLC;
+    if (by_pulse && yaml->slope_evaluations != NULL)
+        return cp_yaml_fail(file, error, "slope_evaluations", "goes with objective olc");
     return CP_OK;
 }
 
@@ -276,6 +404,10 @@ cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error)
         status = read_range(&file, yaml->calibrated, fit, error);
     if (status == CP_OK)
         status = read_numbers(&file, yaml, fit, error);
+    if (status == CP_OK)
+        status = read_leave_out(&file, yaml, fit, error);
+    if (status == CP_OK)
+        status = read_plausible(&file, yaml->plausible, fit, error);
     for (size_t row = 0; status == CP_OK && row < yaml->unknowns_count; row++)
         status = read_unknown(&file, &yaml->unknowns[row], row, fit, error);
     fit->unknown_count = yaml->unknowns_count;

@@ -3,6 +3,7 @@
 #define CALIBRATE_FIT_FILE_H
 
 #include "calibrate/candidate.h"
+#include "calibrate/plausibility.h"
 #include "calibrate/reference_pulse.h"
 
 #include <stdint.h>
@@ -48,7 +49,13 @@ typedef struct cp_fit {
     double global_time_step_s; /* default 0.0005 */
     double local_time_step_s;  /* default 0.0005 */
     size_t local_evaluations;  /* of Nelder-Mead, default 1000; 0: none */
+    size_t starts;             /* global searches from other seeds; the best counts; default 1 */
+    size_t slope_evaluations;  /* of least squares, default 0: none; of several starts each gets
+                                  a quarter, then the best all */
     size_t folds;              /* of the cross-validation, default 0: none */
+    bool leave_out[4];         /* also leave out one level at a time of: -, speed, offset, angle
+                                  (index: cp_cross_kind) */
+    cp_plausibility plausible; /* bounds of the pulse's marks */
     int threads;               /* default 1 */
     size_t unknown_count;
     cp_unknown unknown[CP_UNKNOWNS_MAX];

@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 // So many pulses are listed in the head of the vehicle file.
 enum { MISFITS_MAX = 4 };
@@ -67,7 +66,7 @@ static void write_misfit(FILE *file, const cp_fit *fit, const cp_calibration *ca
                 fit->pulse_count);
     for (size_t k = 0; k < fit->pulse_count && k < MISFITS_MAX; k++) {
         const cp_reference_pulse *pulse = &fit->pulses[k];
-        const cp_pulse_error *found = &calibration->pulse_error[k];
+        const cp_pulse_error *found = &calibration->work.pulse_error[k];
         fprintf(file, "# %s: mean abs. error of v_x %.3f m/s over 0 to %.0f ms;\n", pulse->source,
                 found->vx_m_s, 1e3 * pulse->until_s);
         fprintf(file,
@@ -91,8 +90,10 @@ static void write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *c
             "# Made by crashpulse calibrate; the report of the fit stands beside this file.\n");
     fprintf(file, "# fit file sha256 %s\n# reference sha256 %s\n", fit->hash, fit->reference.hash);
     fprintf(file,
-            "# %s, seed %u, population %zu, generations %zu, then Nelder-Mead, %zu evaluations\n",
-            fit->algorithm, fit->seed, fit->population, fit->generations, fit->local_evaluations);
+            "# %zu x (%s, seed %u, population %zu, generations %zu, then least squares, %zu "
+            "evaluations), then Nelder-Mead, %zu evaluations\n",
+            fit->starts, fit->algorithm, fit->seed, fit->population, fit->generations,
+            fit->slope_evaluations, fit->local_evaluations);
     write_misfit(file, fit, calibration);
     fprintf(file, "vehicle: %s\n", fit->name);
     if (fit->description[0] != '\0')
@@ -135,18 +136,24 @@ static void write_summary(FILE *file, const char *title, const cp_validation *va
 
 static void write_cases(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
 {
-    bool held_out = calibration->held_out_g != NULL;
-    fprintf(file,
-            "\n## Every configuration\n\n| km/h | offset mm | angle deg | reference g | "
-            "model g | error g |%s\n|---:|---:|---:|---:|---:|---:|%s\n",
-            held_out ? " held out g |" : "", held_out ? "---:|" : "");
+    fprintf(file, "\n## Every configuration\n\n| km/h | offset mm | angle deg | reference g | "
+                  "model g | error g |");
+    for (size_t c = 0; c < calibration->cross_count; c++) {
+        char title[80];
+        cp_cross_title(&calibration->cross[c], title);
+        fprintf(file, " held out: %s, g |", title);
+    }
+    fprintf(file, "\n|---:|---:|---:|---:|---:|---:|");
+    for (size_t c = 0; c < calibration->cross_count; c++)
+        fprintf(file, "---:|");
+    fprintf(file, "\n");
     for (size_t k = 0; k < fit->reference.count; k++) {
         const cp_reference_case *row = &fit->reference.cases[k];
         fprintf(file, "| %g | %g | %g | %.2f | %.2f | %+.2f |", row->speed_km_h, row->offset_mm,
-                row->angle_deg, row->olc_g, calibration->olc_g[k],
-                calibration->olc_g[k] - row->olc_g);
-        if (held_out)
-            fprintf(file, " %.2f |", calibration->held_out_g[k]);
+                row->angle_deg, row->olc_g, calibration->work.olc_g[k],
+                calibration->work.olc_g[k] - row->olc_g);
+        for (size_t c = 0; c < calibration->cross_count; c++)
+            fprintf(file, " %.2f |", calibration->cross[c].held_out_g[k]);
         fprintf(file, "\n");
     }
 }
@@ -158,7 +165,7 @@ static void write_cumulative(FILE *file, const cp_fit *fit, const cp_calibration
     for (double limit_g = 0.25; limit_g < 6.0; limit_g *= sqrt(2.0)) {
         size_t below = 0;
         for (size_t k = 0; k < fit->reference.count; k++)
-            below += fabs(calibration->olc_g[k] - fit->reference.cases[k].olc_g) < limit_g;
+            below += fabs(calibration->work.olc_g[k] - fit->reference.cases[k].olc_g) < limit_g;
         fprintf(file, "| %.2f | %.3f |\n", limit_g, (double)below / (double)fit->reference.count);
     }
 }
@@ -198,7 +205,7 @@ static void write_pulses(FILE *file, const cp_fit *fit, const cp_calibration *ca
                   "---:|\n");
     for (size_t k = 0; k < fit->pulse_count; k++) {
         const cp_reference_pulse *pulse = &fit->pulses[k];
-        const cp_pulse_error *found = &calibration->pulse_error[k];
+        const cp_pulse_error *found = &calibration->work.pulse_error[k];
         fprintf(file, "| %s | %.4g | %g | %g | %.0f |", pulse->source, pulse->condition.speed_km_h,
                 pulse->condition.offset_mm, pulse->condition.angle_deg, 1e3 * pulse->until_s);
         write_mark(file, found->total, 1.0, 3);
@@ -216,10 +223,39 @@ static void write_pulses(FILE *file, const cp_fit *fit, const cp_calibration *ca
     }
 }
 
+// The pulse's marks against what is plausible.
+static void write_marks(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    const cp_plausibility *guard = &fit->plausible;
+    if (!guard->given)
+        return;
+    double excess_1[CP_MARK_COUNT];
+    cp_plausibility_excess(guard, calibration->mark, excess_1);
+    fprintf(file, "\n## Marks of the pulse at %g km/h, %g mm, %g deg\n\n", guard->speed_km_h,
+            guard->offset_mm, guard->angle_deg);
+    fprintf(file,
+            "Bounds: %s\n\n| mark | model | smallest | largest | |\n|---|---:|---:|---:|---|\n",
+            guard->source);
+    for (int k = 0; k < CP_MARK_COUNT; k++) {
+        if (!guard->bounded[k])
+            continue;
+        double unit = CP_MARK_KIND[k].si_per_unit;
+        fprintf(file, "| %s | %.4g | %g | %g | %s |\n", CP_MARK_KIND[k].key,
+                calibration->mark[k] / unit, guard->min[k] / unit, guard->max[k] / unit,
+                excess_1[k] == 0.0 ? "" : "outside");
+    }
+}
+
 static void write_objective(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
 {
     if (fit->objective == CP_FIT_OLC) {
-        fprintf(file, "Objective: mean absolute OLC error against `%s`. ", fit->reference_path);
+        fprintf(file, "Objective: mean absolute OLC error against `%s`%s: %.3f g. ",
+                fit->reference_path,
+                fit->plausible.given
+                    ? ", and 1 g for every width a mark of the pulse is outside of "
+                      "its bounds"
+                    : "",
+                calibration->objective);
         return;
     }
     fprintf(file,
@@ -233,19 +269,21 @@ static void write_report(FILE *file, const cp_fit *fit, const cp_calibration *ca
     fprintf(file, "# Fit of %s\n\n", fit->name);
     write_objective(file, fit, calibration);
     fprintf(file,
-            "Global search `%s` (seed %u, "
-            "population %zu, %zu generations, time step %g s), then Nelder-Mead (%zu evaluations, "
-            "time step %g s).\n",
-            fit->algorithm, fit->seed, fit->population, fit->generations, fit->global_time_step_s,
+            "%zu start%s of: global search `%s` (seed %u, population %zu, %zu generations, time "
+            "step %g s), then least squares (%zu evaluations); from the best Nelder-Mead (%zu "
+            "evaluations, time step %g s).\n",
+            fit->starts, fit->starts == 1 ? "" : "s", fit->algorithm, fit->seed, fit->population,
+            fit->generations, fit->global_time_step_s, fit->slope_evaluations,
             fit->local_evaluations, fit->local_time_step_s);
     if (fit->objective == CP_FIT_PULSE)
         write_pulses(file, fit, calibration);
     write_summary(file, fit->objective == CP_FIT_PULSE ? "OLC" : "Fitted to all configurations",
                   &calibration->validation);
-    if (calibration->held_out_g != NULL) {
+    write_marks(file, fit, calibration);
+    for (size_t c = 0; c < calibration->cross_count; c++) {
         char title[80];
-        snprintf(title, sizeof title, "%zu-fold cross-validation", calibration->fold_count);
-        write_summary(file, title, &calibration->cross_validation);
+        cp_cross_title(&calibration->cross[c], title);
+        write_summary(file, title, &calibration->cross[c].validation);
     }
     write_cumulative(file, fit, calibration);
     write_parameters(file, fit, calibration);
@@ -284,11 +322,8 @@ cp_status cp_calibration_write(const cp_fit *fit, const cp_calibration *calibrat
         return status;
 
     // What a killed fit would have gone on from is no longer needed.
-    snprintf(path, sizeof path, "%s.fit.state", fit->output_path);
-    unlink(path);
-    for (size_t f = 0; f < calibration->fold_count; f++) {
-        snprintf(path, sizeof path, "%s.fold%zu.fit.state", fit->output_path, f + 1);
-        unlink(path);
-    }
+    cp_fit_search_forget(fit, fit->output_path);
+    for (size_t c = 0; c < calibration->cross_count; c++)
+        cp_cross_validation_forget(fit, &calibration->cross[c]);
     return CP_OK;
 }

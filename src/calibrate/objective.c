@@ -12,6 +12,7 @@ static const double LONGEST_RECORD_S = 0.25;
 typedef struct evaluation {
     const cp_vehicle_model *model;
     const cp_reference_case *cases;
+    const bool *use;
     double time_step_s;
     double *olc_g;
 } evaluation;
@@ -22,6 +23,7 @@ static double olc_of_case(const evaluation *work, const cp_reference_case *row)
     options.time_step_s = work->time_step_s;
     options.duration_s = SHORTEST_RECORD_S;
     options.longest_duration_s = LONGEST_RECORD_S;
+    options.until_olc = true;
     cp_error error = {0};
     cp_crash_configuration configuration;
     if (cp_crash_configuration_from_description(
@@ -40,14 +42,15 @@ static double olc_of_case(const evaluation *work, const cp_reference_case *row)
 static void evaluate_case(void *context, size_t k)
 {
     evaluation *work = context;
-    work->olc_g[k] = olc_of_case(work, &work->cases[k]);
+    if (work->use == NULL || work->use[k])
+        work->olc_g[k] = olc_of_case(work, &work->cases[k]);
 }
 
 cp_status cp_objective_olc(const cp_vehicle_model *model, const cp_reference_case *cases,
-                           size_t count, double time_step_s, int threads, double *olc_g,
-                           cp_error *error)
+                           size_t count, const bool *use, double time_step_s, int threads,
+                           double *olc_g, cp_error *error)
 {
-    evaluation work = {model, cases, time_step_s, olc_g};
+    evaluation work = {model, cases, use, time_step_s, olc_g};
     return cp_parallel_simulate(count, threads, evaluate_case, &work, error);
 }
 

@@ -28,8 +28,9 @@ static const struct argp ARGP = {
     .parser = parse,
     .args_doc = "FIT.yaml",
     .doc =
-        "Fit a vehicle model to reference OLC values or pulses: a global search, then "
-        "Nelder-Mead. Writes the fitted vehicle file and a report beside it (.fit.md)."
+        "Fit a vehicle model to reference OLC values or pulses: a global search, least squares "
+        "and Nelder-Mead, cross-validated where the fit file asks for it. Writes the fitted "
+        "vehicle file and a report beside it (.fit.md)."
         "\v"
         "The fit file names base vehicle, references, unknowns with bounds, algorithm, seed and "
         "budget (db/vehicles/README.md). A killed fit goes on where it was when called again.\n\n"
@@ -60,9 +61,13 @@ cp_status cmd_calibrate(int argc, char **argv, cp_error *error)
                    fit.pulse_count);
         printf("%s: mean absolute OLC error %.3f g, largest %.2f g\n", fit.output_path,
                calibration.validation.mean_abs_error_g, calibration.validation.max_abs_error_g);
-        if (calibration.held_out_g != NULL)
-            printf("%zu-fold cross-validation: %.3f g\n", calibration.fold_count,
-                   calibration.cross_validation.mean_abs_error_g);
+        for (size_t c = 0; c < calibration.cross_count; c++) {
+            const cp_validation *predicted = &calibration.cross[c].validation;
+            char title[80];
+            cp_cross_title(&calibration.cross[c], title);
+            printf("%s: %.3f g, largest %.2f g\n", title, predicted->mean_abs_error_g,
+                   predicted->max_abs_error_g);
+        }
     }
     cp_calibration_destroy(&calibration);
     cp_fit_destroy(&fit);

@@ -231,7 +231,7 @@ static cp_status validate_olc(const arguments *a, const cp_vehicle_model *model,
     }
     if (status == CP_OK) {
         status =
-            cp_objective_olc(model, reference.cases, reference.count,
+            cp_objective_olc(model, reference.cases, reference.count, NULL,
                              cp_crash_options_default().time_step_s, (int)a->threads, olc_g, error);
         cp_crash_library_end();
     }

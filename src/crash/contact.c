@@ -31,22 +31,42 @@ static polygon core_polygon(const cp_outline *outline)
     return core;
 }
 
-// Widest gap between the faces of a and the corners of b, and the face that has it.
-static double face_gap(const polygon *a, const polygon *b, int *face)
+// The face of a polygon that another one is farthest in front of, and the other's corner nearest
+// to that face.
+typedef struct face_view {
+    double gap_m;
+    int face;
+    int corner;
+} face_view;
+
+static face_view face_gap(const polygon *a, const polygon *b)
 {
-    double widest_m = -INFINITY;
+    face_view widest = {.gap_m = -INFINITY};
     for (int k = 0; k < 4; k++) {
-        double nearest_m = INFINITY;
+        face_view nearest = {.gap_m = INFINITY, .face = k};
         for (int j = 0; j < 4; j++) {
             cp_vec2 reach = cp_vec2_sub(b->corner[j], a->corner[k]);
-            nearest_m = fmin(nearest_m, cp_vec2_dot(reach, a->normal[k]));
+            double gap_m = cp_vec2_dot(reach, a->normal[k]);
+            if (gap_m < nearest.gap_m) {
+                nearest.gap_m = gap_m;
+                nearest.corner = j;
+            }
         }
-        if (nearest_m > widest_m) {
-            widest_m = nearest_m;
-            *face = k;
-        }
+        if (nearest.gap_m > widest.gap_m)
+            widest = nearest;
     }
-    return widest_m;
+    return widest;
+}
+
+// Whether the nearest corner lies straight in front of the face: then nothing is nearer.
+static bool straight_ahead(const polygon *a, const polygon *b, const face_view *view)
+{
+    // Along the normal's own tangent, so that a face without width is no face.
+    cp_vec2 origin = a->corner[view->face], normal = a->normal[view->face];
+    cp_vec2 tangent = {-normal.y, normal.x};
+    double width_m = cp_vec2_dot(cp_vec2_sub(a->corner[(view->face + 1) % 4], origin), tangent);
+    double along_m = cp_vec2_dot(cp_vec2_sub(b->corner[view->corner], origin), tangent);
+    return along_m >= 0.0 && along_m <= width_m;
 }
 
 static cp_vec2 nearest_on_edge(cp_vec2 from, cp_vec2 to, cp_vec2 point)
@@ -166,24 +186,25 @@ cp_manifold cp_outline_contact(const cp_outline *a, const cp_outline *b, double 
     if (far_apart(a, b, reach_m))
         return none;
     polygon core_a = core_polygon(a), core_b = core_polygon(b);
-    int face_a = 0, face_b = 0;
-    double gap_a_m = face_gap(&core_a, &core_b, &face_a);
-    double gap_b_m = face_gap(&core_b, &core_a, &face_b);
-    double gap_m = fmax(gap_a_m, gap_b_m);
+    face_view from_a = face_gap(&core_a, &core_b), from_b = face_gap(&core_b, &core_a);
+    bool a_leads = from_a.gap_m >= from_b.gap_m - 1e-9;
+    double gap_m = fmax(from_a.gap_m, from_b.gap_m);
     if (gap_m > a->radius_m + b->radius_m + reach_m)
         return none;
 
     // Separated cores whose nearest features are two corners meet on their rounding.
-    if (gap_m > 0.0) {
+    bool ahead = a_leads ? straight_ahead(&core_a, &core_b, &from_a)
+                         : straight_ahead(&core_b, &core_a, &from_b);
+    if (gap_m > 0.0 && !ahead) {
         cp_vec2 on_a, on_b;
         double distance_m = nearest_points(&core_a, &core_b, &on_a, &on_b);
         if (distance_m > gap_m + 1e-9)
             return corner_contact(on_a, on_b, distance_m, a->radius_m, b->radius_m, reach_m);
     }
-    if (gap_a_m >= gap_b_m - 1e-9)
-        return face_contact(&core_a, face_a, &core_b, a->radius_m, b->radius_m, reach_m);
+    if (a_leads)
+        return face_contact(&core_a, from_a.face, &core_b, a->radius_m, b->radius_m, reach_m);
     cp_manifold manifold =
-        face_contact(&core_b, face_b, &core_a, b->radius_m, a->radius_m, reach_m);
+        face_contact(&core_b, from_b.face, &core_a, b->radius_m, a->radius_m, reach_m);
     manifold.normal = cp_vec2_scale(manifold.normal, -1.0);
     return manifold;
 }
@@ -193,9 +214,8 @@ double cp_outline_distance_below(const cp_outline *a, const cp_outline *b, doubl
     if (far_apart(a, b, limit_m))
         return INFINITY;
     polygon core_a = core_polygon(a), core_b = core_polygon(b);
-    int face = 0;
     double radii_m = a->radius_m + b->radius_m;
-    double gap_m = fmax(face_gap(&core_a, &core_b, &face), face_gap(&core_b, &core_a, &face));
+    double gap_m = fmax(face_gap(&core_a, &core_b).gap_m, face_gap(&core_b, &core_a).gap_m);
     if (gap_m - radii_m >= limit_m)
         return INFINITY;
     if (gap_m > 0.0) {

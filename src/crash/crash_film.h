@@ -11,7 +11,7 @@
 /* What a camera above the crash would see: where every part of both cars is, frame by frame. A
  * picture only; recording one changes nothing in a simulation. */
 
-/* The parts of a car, one a body of the model. X(name, text). Longitudinals and crash boxes are
+/* The parts of a car that can be seen. X(name, text). Longitudinals and crash boxes are
  * drawn from their rear to their front end as they are at the moment, so they shorten. */
 #define CP_FILM_PARTS(X)                                                                           \
     X(CP_FILM_BODY, "body")                                                                        \
@@ -23,7 +23,9 @@
     X(CP_FILM_CROSS_MEMBER_RIGHT, "cross_member_right")                                            \
     X(CP_FILM_CORNER_LEFT, "corner_left")                                                          \
     X(CP_FILM_CORNER_RIGHT, "corner_right")                                                        \
-    X(CP_FILM_ENGINE, "engine")
+    X(CP_FILM_ENGINE, "engine")                                                                    \
+    X(CP_FILM_UPPER_LEFT, "upper_left")                                                            \
+    X(CP_FILM_UPPER_RIGHT, "upper_right")
 
 typedef enum cp_film_part {
 #define CP_FILM_PART_NAME(name, text) name,

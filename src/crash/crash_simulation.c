@@ -337,6 +337,7 @@ static bool will_meet_again(const crash_run *run, double horizon_s)
 static void update_energy(crash_run *run)
 {
     cp_crash_energy *energy = &run->result->energy;
+    double blocks_j = 0.0; // of the contact's work, what blocks have taken
     energy->kinetic_j = 0.0;
     energy->elastic_j = run->encounter.elastic_normal_j + run->encounter.elastic_friction_j;
     energy->plastic_j = 0.0;
@@ -346,9 +347,15 @@ static void update_energy(crash_run *run)
         energy->elastic_j += cp_car_elastic_energy(&run->car[c]);
         energy->plastic_j += cp_car_plastic_energy(&run->car[c]);
         energy->joint_damping_j += run->car[c].joint_damping_j;
+        double plastic_j, damping_j;
+        cp_car_block_energy(&run->car[c], &plastic_j, &damping_j);
+        energy->plastic_j += plastic_j;
+        energy->joint_damping_j += damping_j;
+        blocks_j += plastic_j + damping_j;
     }
     energy->friction_j = run->encounter.friction_work_j - run->encounter.elastic_friction_j;
-    energy->contact_damping_j = run->encounter.normal_work_j - run->encounter.elastic_normal_j;
+    energy->contact_damping_j =
+        run->encounter.normal_work_j - run->encounter.elastic_normal_j - blocks_j;
     double mechanical_j = energy->kinetic_j + energy->elastic_j;
     energy->highest_mechanical_j = fmax(energy->highest_mechanical_j, mechanical_j);
 }
@@ -394,6 +401,19 @@ static bool olc_decided(const crash_run *run)
     return true;
 }
 
+// Whether every car's OLC already lies behind: no later motion changes it.
+static bool olc_passed(const crash_run *run)
+{
+    double dt = run->options->time_step_s;
+    for (int c = 0; c < run->car_count; c++) {
+        cp_olc olc =
+            cp_olc_from_velocity(run->result->pulse[c].channel[CP_CHANNEL_VX], run->sample + 1, dt);
+        if (olc.status != CP_OLC_VALUE || olc.t2_s > dt * (double)run->sample)
+            return false;
+    }
+    return true;
+}
+
 // One step of the world; returns whether the parties pressed on each other.
 static bool advance(crash_run *run, double dt)
 {
@@ -412,6 +432,7 @@ static bool advance(crash_run *run, double dt)
 
 static cp_status simulate_contact(crash_run *run, cp_error *error)
 {
+    enum { OLC_EVERY = 20 }; // steps between two looks whether OLC is decided
     const cp_crash_options *options = run->options;
     double dt = options->time_step_s;
     size_t wanted = (size_t)llround(options->duration_s / dt);
@@ -431,6 +452,8 @@ static cp_status simulate_contact(crash_run *run, cp_error *error)
                            "the crash simulation left the finite numbers at %g s",
                            dt * (double)run->sample);
         watch_common_velocity(run, dt * (double)run->sample, dt);
+        if (options->until_olc && run->sample % OLC_EVERY == 0 && olc_passed(run))
+            return CP_OK;
         size_t quiet = run->sample - last_pressed;
         if (quiet >= coast_after && quiet % coast_after == 0)
             free_again = !will_meet_again(run, dt * (double)(longest - run->sample));

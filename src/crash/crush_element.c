@@ -15,6 +15,17 @@ double cp_crush_loading_force(const cp_crush_law *law, double s_m)
     return law->end_n + law->stop_n_m * (s_m - law->end_m);
 }
 
+double cp_crush_loading_slope(const cp_crush_law *law, double s_m)
+{
+    if (s_m < 0.0)
+        return 0.0;
+    if (s_m < law->begin_m)
+        return law->begin_n / law->begin_m;
+    if (s_m < law->end_m)
+        return (law->end_n - law->begin_n) / (law->end_m - law->begin_m);
+    return law->stop_n_m;
+}
+
 double cp_crush_loading_work(const cp_crush_law *law, double s_m)
 {
     // Area under the three straight pieces.

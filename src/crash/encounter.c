@@ -121,6 +121,107 @@ static double point_weight(const cp_manifold *manifold)
     return 0.5 + 0.5 * fmin(1.0, apart_m / CONTACT_PATCH_M);
 }
 
+static cp_crush_block *block_of(const cp_encounter *encounter, int party, int index)
+{
+    cp_car *car = encounter->car[party];
+    return car != NULL && car->outline[index].block >= 0 ? &car->block[car->outline[index].block]
+                                                         : NULL;
+}
+
+static cp_encounter_pair *pair_of(cp_encounter *encounter, int party, int own, int other)
+{
+    return party == 0 ? &encounter->pair[own][other] : &encounter->pair[other][own];
+}
+
+// A block gives way only to what presses on its face, not on its sides.
+static const double FACE_COSINE = 0.2;
+
+// All that presses on a block's face along its way, and how much that falls per metre of slip;
+// facing: whether any of it is a block itself.
+static double load_on_block(cp_encounter *encounter, int party, int index, double *slope_n_m,
+                            bool *facing)
+{
+    double load_n = 0.0;
+    *slope_n_m = 0.0;
+    *facing = false;
+    for (int other = 0; other < outline_count(encounter, 1 - party); other++) {
+        const cp_encounter_pair *pair = pair_of(encounter, party, index, other);
+        double cosine = pair->cosine[party], weight = point_weight(&pair->manifold);
+        if (pair->manifold.count == 0 || cosine < FACE_COSINE)
+            continue;
+        for (int k = 0; k < pair->manifold.count; k++) {
+            double depth_m = pair->manifold.point[k].depth_m - pair->give_m;
+            if (depth_m <= 0.0)
+                continue;
+            load_n += weight * pair->stiffness_n_m * depth_m * cosine;
+            *slope_n_m += weight * pair->stiffness_n_m * cosine * cosine;
+            *facing = *facing || pair->cosine[1 - party] >= FACE_COSINE;
+        }
+    }
+    return load_n;
+}
+
+// One round: every block takes the slip that balances its load as it is; where two blocks face
+// each other each takes half. Returns whether any did.
+static bool yield_round(cp_encounter *encounter, double time_step_s, bool *facing)
+{
+    bool gave = false;
+    double slip_m[2][CP_OUTLINE_COUNT];
+    *facing = false;
+    for (int party = 0; party < 2; party++) {
+        for (int k = 0; k < outline_count(encounter, party); k++) {
+            const cp_crush_block *block = block_of(encounter, party, k);
+            if (block == NULL)
+                continue;
+            double slope_n_m;
+            bool faces;
+            double load_n = load_on_block(encounter, party, k, &slope_n_m, &faces);
+            double excess_n = load_n - cp_crush_block_resistance(block, block->slip_m, time_step_s);
+            slope_n_m += cp_crush_block_slope(block, block->slip_m, time_step_s);
+            double more_m = slope_n_m > 0.0 ? excess_n / slope_n_m : 0.0;
+            slip_m[party][k] = fmax(0.0, block->slip_m + (faces ? 0.5 : 1.0) * more_m);
+            gave = gave || slip_m[party][k] > 0.0;
+            *facing = *facing || faces;
+        }
+    }
+    for (int party = 0; party < 2; party++)
+        for (int k = 0; k < outline_count(encounter, party); k++)
+            if (block_of(encounter, party, k) != NULL)
+                block_of(encounter, party, k)->slip_m = slip_m[party][k];
+    return gave;
+}
+
+// What the blocks of every touching pair give along its normal.
+static void share_slip(cp_encounter *encounter)
+{
+    for (int i = 0; i < outline_count(encounter, 0); i++) {
+        for (int j = 0; j < outline_count(encounter, 1); j++) {
+            cp_encounter_pair *pair = &encounter->pair[i][j];
+            const cp_crush_block *block[2] = {block_of(encounter, 0, i), block_of(encounter, 1, j)};
+            pair->give_m = 0.0;
+            for (int party = 0; party < 2; party++)
+                if (block[party] != NULL && pair->cosine[party] >= FACE_COSINE)
+                    pair->give_m += block[party]->slip_m * pair->cosine[party];
+        }
+    }
+}
+
+// Blocks give way until what presses on them is what they resist.
+static void yield_blocks(cp_encounter *encounter, double time_step_s)
+{
+    enum { ROUNDS = 2, ROUNDS_FACING = 8 };
+    bool facing = false;
+    for (int round = 0; round < (facing ? ROUNDS_FACING : ROUNDS); round++) {
+        if (!yield_round(encounter, time_step_s, &facing))
+            break;
+        share_slip(encounter);
+    }
+    for (int party = 0; party < 2; party++)
+        for (int k = 0; k < outline_count(encounter, party); k++)
+            if (block_of(encounter, party, k) != NULL)
+                cp_crush_block_settle(block_of(encounter, party, k), time_step_s);
+}
+
 // Spring and damper of every point; returns the whole pressure, and where its middle is.
 static double press(cp_encounter *encounter, cp_encounter_pair *pair, double time_step_s)
 {
@@ -129,7 +230,7 @@ static double press(cp_encounter *encounter, cp_encounter_pair *pair, double tim
     cp_vec2 moment = {0.0, 0.0};
     for (int k = 0; k < manifold->count; k++) {
         cp_vec2 at = manifold->point[k].position_m;
-        double depth_m = fmax(0.0, manifold->point[k].depth_m);
+        double depth_m = fmax(0.0, manifold->point[k].depth_m - pair->give_m);
         pair->relative_m_s[k] = relative_velocity(pair, at);
         double damping_n_s_m =
             fmin(pair->damping_n_s_m, damping_limit(pair, at, manifold->normal, time_step_s));
@@ -176,6 +277,19 @@ void cp_encounter_apply_forces(cp_encounter *encounter, double time_step_s)
         for (int j = 0; j < outline_count(encounter, 1); j++) {
             cp_encounter_pair *pair = &encounter->pair[i][j];
             pair->manifold = cp_outline_contact(&outline[0][i], &outline[1][j], 0.0);
+            pair->give_m = 0.0;
+            pair->cosine[0] = block_of(encounter, 0, i) == NULL
+                                  ? 0.0
+                                  : cp_vec2_dot(pair->manifold.normal, outline[0][i].along);
+            pair->cosine[1] = block_of(encounter, 1, j) == NULL
+                                  ? 0.0
+                                  : -cp_vec2_dot(pair->manifold.normal, outline[1][j].along);
+        }
+    }
+    yield_blocks(encounter, time_step_s);
+    for (int i = 0; i < outline_count(encounter, 0); i++) {
+        for (int j = 0; j < outline_count(encounter, 1); j++) {
+            cp_encounter_pair *pair = &encounter->pair[i][j];
             if (pair->manifold.count == 0) {
                 pair->stuck_m = 0.0;
                 continue;

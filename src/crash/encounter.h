@@ -13,6 +13,9 @@
  *
  * Applied forces rather than ODE contact joints: the joints of a car then form a system without
  * inequalities, which ODE solves by one factorisation, and two cars stay two independent systems.
+ * Crush blocks give way where the contact springs press on them harder than they resist. What one
+ * block gives depends on all that presses on it at once, never on the order of the pairs.
+ *
  * Damping is limited to what stops the touching bodies within a step, so it only ever dissipates.
  */
 
@@ -23,10 +26,12 @@ typedef struct cp_encounter_pair {
     double damping_n_s_m;
     cp_manifold manifold;    /* count 0: not touching */
     cp_vec2 relative_m_s[3]; /* of [0] against [1] at the two points and at the friction point */
-    double press_n[2];       /* normal force at the two points */
-    cp_vec2 friction_at_m;   /* where friction acts: the middle of the pressure */
-    double drag_n;           /* friction force on [1] along the tangent */
-    double stuck_m;          /* displacement of the friction spring; memory between steps */
+    double cosine[2];      /* of the normal against the way the block of [0], [1] gives; 0: none */
+    double give_m;         /* along the normal, by which blocks give way in this step */
+    double press_n[2];     /* normal force at the two points */
+    cp_vec2 friction_at_m; /* where friction acts: the middle of the pressure */
+    double drag_n;         /* friction force on [1] along the tangent */
+    double stuck_m;        /* displacement of the friction spring; memory between steps */
 } cp_encounter_pair;
 
 typedef struct cp_encounter {

@@ -3,12 +3,15 @@
 
 #include <stdlib.h>
 
-// The film's parts are the model's bodies, one for one.
-_Static_assert((int)CP_FILM_PART_COUNT == (int)CP_BODY_COUNT, "one part a body");
-_Static_assert((int)CP_FILM_LONGITUDINAL_LEFT == (int)CP_BODY_LONGITUDINAL_LEFT &&
-                   (int)CP_FILM_CRASH_BOX_LEFT == (int)CP_BODY_CRASH_BOX_LEFT &&
-                   (int)CP_FILM_ENGINE == (int)CP_BODY_ENGINE,
-               "in the same order");
+// What the outlines of a car are, in their order; members without outline are drawn as bars.
+static const cp_film_part PART_OF_OUTLINE[CP_OUTLINE_COUNT] = {CP_FILM_CROSS_MEMBER_LEFT,
+                                                               CP_FILM_CROSS_MEMBER_RIGHT,
+                                                               CP_FILM_CORNER_LEFT,
+                                                               CP_FILM_CORNER_RIGHT,
+                                                               CP_FILM_ENGINE,
+                                                               CP_FILM_BODY,
+                                                               CP_FILM_UPPER_LEFT,
+                                                               CP_FILM_UPPER_RIGHT};
 
 static cp_film_shape shape_of_outline(const cp_outline *outline)
 {
@@ -88,7 +91,7 @@ static void take_parts(const cp_car *car, cp_film_car *seen)
 {
     for (int k = 0; k < CP_OUTLINE_COUNT; k++) {
         cp_outline outline = cp_car_outline_now(car, k);
-        seen->part[car->outline[k].body] = shape_of_outline(&outline);
+        seen->part[PART_OF_OUTLINE[k]] = shape_of_outline(&outline);
     }
     for (int side = 0; side < 2; side++)
         take_members(car, side, seen->part);

@@ -52,6 +52,9 @@ typedef struct layout {
     double engine_length_m;
     double corner_m; /* middle of the outboard corners */
     double corner_length_m;
+    double upper_m;
+    double upper_length_m;
+    double upper_width_m;
 } layout;
 
 static layout layout_of(const cp_vehicle_model *m)
@@ -70,6 +73,10 @@ static layout layout_of(const cp_vehicle_model *m)
     double corner_front_m = at.front_m - m->corner_gap_m;
     at.corner_m = 0.5 * (corner_front_m + at.firewall_m);
     at.corner_length_m = corner_front_m - at.firewall_m;
+    double upper_front_m = at.front_m - m->upper_gap_m;
+    at.upper_m = 0.5 * (upper_front_m + at.firewall_m);
+    at.upper_length_m = upper_front_m - at.firewall_m;
+    at.upper_width_m = 0.5 * m->width_m - m->corner_width_m;
     return at;
 }
 
@@ -89,23 +96,19 @@ static cp_status distribute_mass(cp_car *car, const layout *at, cp_vec2 place[CP
     for (int side = 0; side < 2; side++) {
         double sign = side == 0 ? 1.0 : -1.0;
         int longitudinal = CP_BODY_LONGITUDINAL_LEFT + side, box = CP_BODY_CRASH_BOX_LEFT + side;
-        int cross = CP_BODY_CROSS_MEMBER_LEFT + side, corner = CP_BODY_CORNER_LEFT + side;
+        int cross = CP_BODY_CROSS_MEMBER_LEFT + side;
         place[longitudinal] = (cp_vec2){at->longitudinal_m, sign * m->longitudinal_y_m};
         place[box] = (cp_vec2){at->crash_box_m, sign * m->longitudinal_y_m};
         place[cross] = (cp_vec2){at->cross_member_m, sign * 0.5 * m->cross_member_half_width_m};
-        place[corner] = (cp_vec2){at->corner_m, sign * 0.5 * (m->width_m - m->corner_width_m)};
         car->mass_kg[longitudinal] = m->longitudinal_mass_kg;
         car->mass_kg[box] = m->crash_box_mass_kg;
         car->mass_kg[cross] = m->cross_member_mass_kg;
-        car->mass_kg[corner] = m->corner_mass_kg;
         car->inertia_kg_m2[longitudinal] =
             box_inertia(m->longitudinal_mass_kg, m->longitudinal_length_m, thickness_m);
         car->inertia_kg_m2[box] =
             box_inertia(m->crash_box_mass_kg, m->crash_box_length_m, thickness_m);
         car->inertia_kg_m2[cross] = box_inertia(m->cross_member_mass_kg, m->cross_member_depth_m,
                                                 m->cross_member_half_width_m);
-        car->inertia_kg_m2[corner] =
-            box_inertia(m->corner_mass_kg, at->corner_length_m, m->corner_width_m);
     }
     place[CP_BODY_ENGINE] = (cp_vec2){at->engine_m, 0.0};
     car->mass_kg[CP_BODY_ENGINE] = m->engine_mass_kg;
@@ -175,7 +178,6 @@ static void join_bodies(cp_car *car, dWorldID world, const layout *at,
         dBodyID longitudinal = car->body[CP_BODY_LONGITUDINAL_LEFT + side];
         dBodyID box = car->body[CP_BODY_CRASH_BOX_LEFT + side];
         dBodyID cross = car->body[CP_BODY_CROSS_MEMBER_LEFT + side];
-        dBodyID corner = car->body[CP_BODY_CORNER_LEFT + side];
 
         // The longitudinal slides along its own axis through its foot on the root and turns there.
         cp_vec2 foot = {at->firewall_m - place[CP_BODY_ROOT].x,
@@ -187,9 +189,8 @@ static void join_bodies(cp_car *car, dWorldID world, const layout *at,
         dJointSetPRAxis2(joint, 0.0, 0.0, 1.0);
         dJointSetPRAnchor(joint, foot_world.x, foot_world.y, 0.0);
 
-        // Crash box along the longitudinal, outboard corner along the car.
+        // Crash box along the longitudinal.
         slide_along(world, box, longitudinal, ahead);
-        slide_along(world, corner, root, ahead);
 
         // The cross member half turns on the front end of its crash box.
         cp_vec2 tip = body_point(box, (cp_vec2){at->cross_member_m - at->crash_box_m, 0.0});
@@ -218,9 +219,25 @@ static cp_crush_law crush_law(const cp_vehicle_model *m, double begin_m, double 
                           .stop_n_m = stop_n_m};
 }
 
-// Compression zero in the undeformed car (gap_m: only after that much approach).
+// Between engine and firewall, half of it on each side: subframe and mounts give way at a constant
+// force until the engine meets the firewall.
+static cp_crush_law engine_bay_law(const cp_vehicle_model *m)
+{
+    double cradle_n = 0.5e3 * m->engine_cradle_kn;
+    double firewall_n_m = 0.5e3 * m->firewall_stiffness_kn_m;
+    double begin_m = fmin(0.02, 0.5 * m->engine_gap_firewall_m);
+    double unload_n_m = fmax(m->unload_factor_1 * firewall_n_m, 1e3 * m->stop_stiffness_kn_m);
+    return (cp_crush_law){.begin_m = begin_m,
+                          .begin_n = cradle_n,
+                          .end_m = m->engine_gap_firewall_m,
+                          .end_n = cradle_n,
+                          .unload_n_m = fmax(unload_n_m, cradle_n / begin_m),
+                          .stop_n_m = firewall_n_m};
+}
+
+// Compression zero in the undeformed car.
 static void set_axial(cp_car *car, int index, int front, int rear, int axis, cp_vec2 front_point_m,
-                      cp_vec2 rear_point_m, bool at_rear, double gap_m, cp_crush_law law)
+                      cp_vec2 rear_point_m, bool at_rear, cp_crush_law law)
 {
     cp_axial_element *element = &car->axial[index];
     *element = (cp_axial_element){.front = front,
@@ -230,10 +247,11 @@ static void set_axial(cp_car *car, int index, int front, int rear, int axis, cp_
                                   .rear_point_m = rear_point_m,
                                   .force_at_rear_point = at_rear,
                                   .law = law,
-                                  .damping_n_s_m = 1e3 * car->model->member_damping_kn_s_m};
+                                  .damping_n_s_m = 1e3 * car->model->member_damping_kn_s_m,
+                                  .rate_s_m = car->model->crush_rate_s_m};
     cp_vec2 reach = cp_vec2_sub(body_point(car->body[front], front_point_m),
                                 body_point(car->body[rear], rear_point_m));
-    element->rest_m = cp_vec2_dot(reach, body_direction(car->body[axis], (cp_vec2){1, 0})) - gap_m;
+    element->rest_m = cp_vec2_dot(reach, body_direction(car->body[axis], (cp_vec2){1, 0}));
 }
 
 static void set_force_elements(cp_car *car, const layout *at, const cp_vec2 place[CP_BODY_COUNT])
@@ -246,29 +264,21 @@ static void set_force_elements(cp_car *car, const layout *at, const cp_vec2 plac
     cp_crush_law box_law =
         crush_law(m, m->crash_box_collapse_begin_m, m->crash_box_collapse_begin_kn,
                   m->crash_box_collapse_end_m, m->crash_box_collapse_end_kn);
-    cp_crush_law corner_law = crush_law(m, m->corner_collapse_begin_m, m->corner_collapse_begin_kn,
-                                        m->corner_collapse_end_m, m->corner_collapse_end_kn);
-    // Half of the engine's face each, one slope without end.
-    double firewall_kn_m = 0.5 * m->firewall_stiffness_kn_m;
-    cp_crush_law firewall_law = crush_law(m, 0.01, 0.01 * firewall_kn_m, 2.0, 2.0 * firewall_kn_m);
+    cp_crush_law bay_law = engine_bay_law(m);
 
     for (int side = 0; side < 2; side++) {
         double sign = side == 0 ? 1.0 : -1.0;
         int longitudinal = CP_BODY_LONGITUDINAL_LEFT + side, box = CP_BODY_CRASH_BOX_LEFT + side;
-        int cross = CP_BODY_CROSS_MEMBER_LEFT + side, corner = CP_BODY_CORNER_LEFT + side;
+        int cross = CP_BODY_CROSS_MEMBER_LEFT + side;
         cp_vec2 foot = {at->firewall_m - place[CP_BODY_ROOT].x, place[longitudinal].y};
-        cp_vec2 corner_home = cp_vec2_sub(place[corner], place[CP_BODY_ROOT]);
         cp_vec2 engine_back = {-0.5 * at->engine_length_m, sign * 0.5 * m->engine_width_m};
         cp_vec2 firewall = {at->firewall_m - place[CP_BODY_ROOT].x, engine_back.y};
-        set_axial(car, side, longitudinal, CP_BODY_ROOT, longitudinal, centre, foot, true, 0.0,
+        set_axial(car, side, longitudinal, CP_BODY_ROOT, longitudinal, centre, foot, true,
                   longitudinal_law);
-        set_axial(car, 2 + side, box, longitudinal, longitudinal, centre, centre, false, 0.0,
-                  box_law);
-        set_axial(car, 4 + side, corner, CP_BODY_ROOT, CP_BODY_ROOT, centre, corner_home, false,
-                  0.0, corner_law);
-        set_axial(car, 6 + side, CP_BODY_ENGINE, CP_BODY_ROOT, CP_BODY_ROOT, engine_back, firewall,
-                  false, m->engine_gap_firewall_m, firewall_law);
-        car->axial[6 + side].damping_n_s_m = 0.0;
+        set_axial(car, 2 + side, box, longitudinal, longitudinal, centre, centre, false, box_law);
+        set_axial(car, 4 + side, CP_BODY_ENGINE, CP_BODY_ROOT, CP_BODY_ROOT, engine_back, firewall,
+                  false, bay_law);
+        car->axial[4 + side].damping_n_s_m = 0.0;
 
         car->bending[side] = (cp_bending_element){
             .outer = longitudinal,
@@ -287,6 +297,23 @@ static void set_force_elements(cp_car *car, const layout *at, const cp_vec2 plac
     }
 }
 
+// Corners and upper load path.
+static void set_blocks(cp_car *car)
+{
+    const cp_vehicle_model *m = car->model;
+    for (int side = 0; side < 2; side++) {
+        car->block[side].law = crush_law(m, m->corner_collapse_begin_m, m->corner_collapse_begin_kn,
+                                         m->corner_collapse_end_m, m->corner_collapse_end_kn);
+        car->block[2 + side].law =
+            crush_law(m, m->upper_collapse_begin_m, m->upper_collapse_begin_kn,
+                      m->upper_collapse_end_m, m->upper_collapse_end_kn);
+    }
+    for (int k = 0; k < CP_BLOCK_COUNT; k++) {
+        car->block[k].damping_n_s_m = 1e3 * m->member_damping_kn_s_m;
+        car->block[k].rate_s_m = m->crush_rate_s_m;
+    }
+}
+
 static void set_outlines(cp_car *car, const layout *at, const cp_vec2 place[CP_BODY_COUNT])
 {
     // Bodies in front are stiff shells around what collapses behind them; sides and rear give way.
@@ -295,30 +322,49 @@ static void set_outlines(cp_car *car, const layout *at, const cp_vec2 place[CP_B
     double front_n_m = 1e3 * m->contact_stiffness_kn_m, body_n_m = 1e3 * m->body_stiffness_kn_m;
     double front_n_s_m = 2.0 * m->contact_damping_1 * sqrt(front_n_m * contact_mass_kg);
     double body_n_s_m = 2.0 * m->body_damping_1 * sqrt(body_n_m * 0.5 * m->mass_kg);
-    double r = m->corner_radius_m;
+    double r = m->corner_radius_m, root_m = place[CP_BODY_ROOT].x;
     for (int side = 0; side < 2; side++) {
+        // A half swept back keeps its inner end in front.
+        double sign = side == 0 ? 1.0 : -1.0, sweep_rad = sign * m->cross_member_sweep_rad;
+        double back_m = 0.5 * m->cross_member_half_width_m * sin(m->cross_member_sweep_rad);
         car->outline[side] = (cp_car_outline){.body = CP_BODY_CROSS_MEMBER_LEFT + side,
+                                              .block = -1,
+                                              .centre_m = {-back_m, 0.0},
+                                              .along = cp_vec2_heading(sweep_rad),
                                               .half_length_m = 0.5 * m->cross_member_depth_m,
                                               .half_width_m = 0.5 * m->cross_member_half_width_m};
-        car->outline[2 + side] = (cp_car_outline){.body = CP_BODY_CORNER_LEFT + side,
+        cp_vec2 corner_m = {at->corner_m - root_m, sign * 0.5 * (m->width_m - m->corner_width_m)};
+        car->outline[2 + side] = (cp_car_outline){.body = CP_BODY_ROOT,
+                                                  .block = side,
+                                                  .centre_m = corner_m,
                                                   .half_length_m = 0.5 * at->corner_length_m,
                                                   .half_width_m = 0.5 * m->corner_width_m};
+        car->outline[6 + side] =
+            (cp_car_outline){.body = CP_BODY_ROOT,
+                             .block = 2 + side,
+                             .centre_m = {at->upper_m - root_m, sign * 0.5 * at->upper_width_m},
+                             .half_length_m = 0.5 * at->upper_length_m,
+                             .half_width_m = 0.5 * at->upper_width_m};
     }
     car->outline[4] = (cp_car_outline){.body = CP_BODY_ENGINE,
+                                       .block = -1,
                                        .half_length_m = 0.5 * at->engine_length_m,
                                        .half_width_m = 0.5 * m->engine_width_m};
     double rear_m = m->cg_to_front_m - m->length_m;
     car->outline[5] =
         (cp_car_outline){.body = CP_BODY_ROOT,
+                         .block = -1,
                          .centre_m = {0.5 * (rear_m + at->firewall_m) - place[CP_BODY_ROOT].x, 0.0},
                          .half_length_m = 0.5 * (at->firewall_m - rear_m),
                          .half_width_m = 0.5 * m->width_m};
     for (int k = 0; k < CP_OUTLINE_COUNT; k++) {
         cp_car_outline *outline = &car->outline[k];
-        bool body = outline->body == CP_BODY_ROOT;
+        if (k >= 2)
+            outline->along = (cp_vec2){1.0, 0.0};
+        bool body = outline->body == CP_BODY_ROOT && outline->block < 0;
         outline->radius_m = fmin(r, fmin(outline->half_length_m, outline->half_width_m));
         outline->stiffness_n_m = body ? body_n_m : front_n_m;
-        outline->damping_n_s_m = body ? body_n_s_m : front_n_s_m;
+        outline->damping_n_s_m = outline->block >= 0 ? 0.0 : body ? body_n_s_m : front_n_s_m;
     }
 }
 
@@ -334,6 +380,7 @@ cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model, dWorldID worl
     place_bodies(car, world, state, place);
     join_bodies(car, world, &at, place);
     set_force_elements(car, &at, place);
+    set_blocks(car);
     set_outlines(car, &at, place);
     return CP_OK;
 }
@@ -362,12 +409,21 @@ static axial_view view_axial(const cp_car *car, const cp_axial_element *element)
     return view;
 }
 
+// Linear damper, and what the rate adds to the force of a collapse (not of a stop).
+static double damping_force(const cp_axial_element *element, double crush_n, double rate_m_s)
+{
+    double collapse_n = fmin(crush_n, fmax(element->law.begin_n, element->law.end_n));
+    double rate_n_s_m = rate_m_s > 0.0 ? element->rate_s_m * collapse_n : 0.0;
+    return (element->damping_n_s_m + rate_n_s_m) * rate_m_s;
+}
+
 static void apply_axial(cp_car *car, cp_axial_element *element)
 {
     axial_view view = view_axial(car, element);
     element->rate_m_s = view.rate_m_s;
-    element->damping_n = element->damping_n_s_m * view.rate_m_s;
-    double force_n = cp_crush_force(&element->law, &element->state, view.s_m) + element->damping_n;
+    double force_n = cp_crush_force(&element->law, &element->state, view.s_m);
+    element->damping_n = damping_force(element, force_n, view.rate_m_s);
+    force_n += element->damping_n;
     push_apart(car->body[element->front], car->body[element->rear],
                cp_vec2_scale(view.direction, force_n), view.point_m);
 }
@@ -470,7 +526,7 @@ void cp_car_after_step(cp_car *car, double time_step_s)
     // Work of a damper over the step: its force times the mean of the rates before and after.
     for (int k = 0; k < CP_AXIAL_COUNT; k++) {
         const cp_axial_element *element = &car->axial[k];
-        if (element->damping_n_s_m <= 0.0)
+        if (element->damping_n == 0.0)
             continue;
         double rate_m_s = 0.5 * (element->rate_m_s + view_axial(car, element).rate_m_s);
         car->joint_damping_j += element->damping_n * rate_m_s * time_step_s;
@@ -496,9 +552,15 @@ cp_outline cp_car_outline_now(const cp_car *car, int index)
 {
     const cp_car_outline *outline = &car->outline[index];
     dBodyID body = car->body[outline->body];
-    return (cp_outline){.centre_m = body_point(body, outline->centre_m),
-                        .along = body_direction(body, (cp_vec2){1.0, 0.0}),
-                        .half_length_m = outline->half_length_m,
+
+    // A block's face has been pushed in; its rear stays.
+    double pushed_m = outline->block >= 0 ? car->block[outline->block].s_m : 0.0;
+    double shorter_m = fmin(0.5 * pushed_m, outline->half_length_m - outline->radius_m);
+    cp_vec2 centre_m = outline->centre_m;
+    centre_m.x -= shorter_m;
+    return (cp_outline){.centre_m = body_point(body, centre_m),
+                        .along = body_direction(body, outline->along),
+                        .half_length_m = outline->half_length_m - shorter_m,
                         .half_width_m = outline->half_width_m,
                         .radius_m = outline->radius_m};
 }
@@ -551,6 +613,15 @@ double cp_car_plastic_energy(const cp_car *car)
     for (int k = 0; k < CP_TIE_COUNT; k++)
         energy_j += car->tie[k].plastic_j;
     return energy_j;
+}
+
+void cp_car_block_energy(const cp_car *car, double *plastic_j, double *damping_j)
+{
+    *plastic_j = *damping_j = 0.0;
+    for (int k = 0; k < CP_BLOCK_COUNT; k++) {
+        *plastic_j += car->block[k].plastic_j;
+        *damping_j += car->block[k].damping_j;
+    }
 }
 
 cp_vec2 cp_car_momentum(const cp_car *car, double *angular_kg_m2_s)

@@ -4,6 +4,7 @@
 
 #include "crash/contact.h"
 #include "crash/crash_configuration.h"
+#include "crash/crush_block.h"
 #include "crash/crush_element.h"
 
 #include <ode/ode.h>
@@ -21,8 +22,6 @@ enum {
     CP_BODY_CRASH_BOX_RIGHT,
     CP_BODY_CROSS_MEMBER_LEFT,
     CP_BODY_CROSS_MEMBER_RIGHT,
-    CP_BODY_CORNER_LEFT, /* fender and wheel */
-    CP_BODY_CORNER_RIGHT,
     CP_BODY_ENGINE,
     CP_BODY_COUNT
 };
@@ -40,6 +39,7 @@ typedef struct cp_axial_element {
     cp_crush_law law;
     cp_crush_state state;
     double damping_n_s_m;
+    double rate_s_m;  /* share of the collapse force per m/s of crush rate */
     double damping_n; /* damping force of the present step, and the rate it came from */
     double rate_m_s;
 } cp_axial_element;
@@ -64,17 +64,20 @@ typedef struct cp_tie_element {
 } cp_tie_element;
 
 enum {
-    CP_AXIAL_COUNT = 8, /* 2 longitudinals, 2 crash boxes, 2 corners, 2 engine-to-firewall */
+    CP_AXIAL_COUNT = 6, /* 2 longitudinals, 2 crash boxes, 2 engine-to-firewall */
     CP_BENDING_COUNT = 4,
     CP_TIE_COUNT = 2,
-    CP_OUTLINE_COUNT = 6, /* 2 cross member halves, engine, 2 corners, root */
+    CP_OUTLINE_COUNT = 8, /* 2 cross member halves, 2 corners, engine, root, 2 upper */
+    CP_BLOCK_COUNT = 4,
     CP_HINGE_COUNT = 2
 };
 
 /* A contact outline: which body carries it, where on it, how stiff it is. */
 typedef struct cp_car_outline {
     int body;
+    int block;        /* crush block it is the outline of, -1: none */
     cp_vec2 centre_m; /* in the body's frame */
+    cp_vec2 along;    /* unit vector of its length, likewise */
     double half_length_m;
     double half_width_m;
     double radius_m;
@@ -91,6 +94,7 @@ typedef struct cp_car {
     cp_axial_element axial[CP_AXIAL_COUNT];
     cp_bending_element bending[CP_BENDING_COUNT];
     cp_tie_element tie[CP_TIE_COUNT];
+    cp_crush_block block[CP_BLOCK_COUNT]; /* corners left, right; upper load path left, right */
     cp_car_outline outline[CP_OUTLINE_COUNT];
     dJointID hinge[CP_HINGE_COUNT];
     dJointFeedback hinge_feedback[CP_HINGE_COUNT];
@@ -119,6 +123,8 @@ cp_body_state cp_car_cog_state(const cp_car *car);
 double cp_car_kinetic_energy(const cp_car *car);
 double cp_car_elastic_energy(const cp_car *car);
 double cp_car_plastic_energy(const cp_car *car);
+/* Of what the crush blocks have taken: plastic, and by their rate. Part of the contact's work. */
+void cp_car_block_energy(const cp_car *car, double *plastic_j, double *damping_j);
 /* Linear momentum, and angular momentum about the world's origin (z). */
 cp_vec2 cp_car_momentum(const cp_car *car, double *angular_kg_m2_s);
 

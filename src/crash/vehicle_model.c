@@ -275,7 +275,8 @@ static cp_status check_collapse(cp_error *error, const char *element, double beg
         return cp_fail(error, CP_BAD_INPUT,
                        "%s_collapse_end_m must be above %s_collapse_begin_m = %g, found %g",
                        element, element, begin_m, end_m);
-    if (end_m > length_m)
+    const double rounding_m = 1e-6; // of numbers in a file
+    if (end_m > length_m + rounding_m)
         return cp_fail(error, CP_BAD_INPUT,
                        "%s_collapse_end_m must not exceed the %g m the element is long, found %g",
                        element, length_m, end_m);
@@ -310,9 +311,6 @@ double cp_vehicle_model_largest_step(const cp_vehicle_model *m, const char **ele
          "longitudinal_collapse_begin_m)",
          steepest_n_m(m, m->longitudinal_collapse_begin_m, m->longitudinal_collapse_begin_kn) /
              in_parallel(front_kg + m->longitudinal_mass_kg, root_kg)},
-        {"corner (unload_factor_1 * corner_collapse_begin_kn / corner_collapse_begin_m)",
-         steepest_n_m(m, m->corner_collapse_begin_m, m->corner_collapse_begin_kn) /
-             in_parallel(m->corner_mass_kg, root_kg)},
         {"firewall (unload_factor_1 * firewall_stiffness_kn_m)",
          steepest_n_m(m, 1.0, m->firewall_stiffness_kn_m) /
              in_parallel(m->engine_mass_kg, root_kg)},
@@ -375,13 +373,16 @@ cp_status cp_vehicle_model_validate(const cp_vehicle_model *m, cp_error *error)
     if (status == CP_OK)
         status = check_collapse(error, "corner", m->corner_collapse_begin_m,
                                 m->corner_collapse_end_m, corner_length_m);
+    if (status == CP_OK)
+        status = check_collapse(error, "upper", m->upper_collapse_begin_m, m->upper_collapse_end_m,
+                                front_length_m - m->upper_gap_m);
     if (status != CP_OK)
         return status;
 
     // Masses: most of the car lies behind the firewall.
     double front_mass_kg =
-        m->engine_mass_kg + 2.0 * (m->longitudinal_mass_kg + m->crash_box_mass_kg +
-                                   m->cross_member_mass_kg + m->corner_mass_kg);
+        m->engine_mass_kg +
+        2.0 * (m->longitudinal_mass_kg + m->crash_box_mass_kg + m->cross_member_mass_kg);
     if (front_mass_kg > 0.6 * m->mass_kg)
         return cp_fail(error, CP_BAD_INPUT,
                        "mass_kg must leave at least 40 %% behind the firewall; the front parts "

@@ -38,6 +38,8 @@
     X(crash_box_collapse_end_kn, "kN", 110, 5, 800, "force where nothing is left")                 \
     X(cross_member_half_width_m, "m", 0.75, 0.45, 1.2, "middle to tip of the cross member")        \
     X(cross_member_depth_m, "m", 0.12, 0.06, 0.25, "cross member, front to back")                  \
+    X(cross_member_sweep_rad, "rad", 0, 0, 0.5,                                                    \
+      "how far the front of a half is swept back from the middle to the tip")                      \
     X(cross_member_mass_kg, "kg", 10, 3, 40, "one half of the cross member with bumper")           \
     X(cross_member_bending_kn_m, "kN m", 6, 0.1, 100,                                              \
       "bending moment where a half yields at its box")                                             \
@@ -49,20 +51,29 @@
     X(engine_mount_kn_m, "kN/m", 1500, 10, 20000, "stiffness of one of its two ties")              \
     X(engine_mount_yield_kn, "kN", 30, 1, 300, "force where a tie yields")                         \
     X(engine_mount_damping_kn_s_m, "kN s/m", 3, 0, 50, "damping of one tie")                       \
+    X(engine_cradle_kn, "kN", 0, 0, 500,                                                           \
+      "force at which subframe and mounts let the engine move back towards the firewall")          \
     X(firewall_stiffness_kn_m, "kN/m", 4000, 100, 50000, "engine against firewall")                \
     X(corner_gap_m, "m", 0.3, 0.0, 0.8,                                                            \
       "bumper front to front of the outboard corner (fender, wheel)")                              \
     X(corner_width_m, "m", 0.3, 0.1, 0.6, "outboard corner, across the car from its side inwards") \
-    X(corner_mass_kg, "kg", 30, 5, 80, "one outboard corner with wheel")                           \
     X(corner_collapse_begin_m, "m", 0.05, 0.005, 0.3, "compression where collapse begins")         \
     X(corner_collapse_begin_kn, "kN", 40, 1, 400, "force where collapse begins")                   \
     X(corner_collapse_end_m, "m", 0.5, 0.1, 0.9, "compression where nothing is left")              \
     X(corner_collapse_end_kn, "kN", 90, 1, 800, "force where nothing is left")                     \
+    X(upper_gap_m, "m", 0.15, 0.0, 0.8,                                                            \
+      "bumper front to front of the upper load path (radiator support, hood, upper rails)")        \
+    X(upper_collapse_begin_m, "m", 0.05, 0.005, 0.3, "compression where collapse begins")          \
+    X(upper_collapse_begin_kn, "kN", 10, 0.5, 400, "force where collapse begins")                  \
+    X(upper_collapse_end_m, "m", 0.5, 0.1, 0.9, "compression where nothing is left")               \
+    X(upper_collapse_end_kn, "kN", 20, 0.5, 800, "force where nothing is left")                    \
     X(unload_factor_1, "1", 3, 1, 30,                                                              \
       "unloading stiffness over loading stiffness of every element")                               \
     X(stop_stiffness_kn_m, "kN/m", 4000, 200, 50000,                                               \
       "every element beyond the end of its collapse")                                              \
     X(member_damping_kn_s_m, "kN s/m", 1, 0, 10, "along every prismatic joint")                    \
+    X(crush_rate_s_m, "s/m", 0, 0, 0.05,                                                           \
+      "share by which every collapse force grows per m/s of crush rate (strain rate)")             \
     X(contact_stiffness_kn_m, "kN/m", 8000, 1000, 50000, "front outlines in contact")              \
     X(contact_damping_1, "1", 0.3, 0, 1,                                                           \
       "share of critical damping of front contacts at a cross member half")                        \

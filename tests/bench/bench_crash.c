@@ -2,6 +2,7 @@
 /* How long one crash takes, and how far its OLC is from that of a very fine time step: the study
  * the standard step was chosen by. */
 #include "builders/crash_builder.h"
+#include "calibrate/objective.h"
 #include "core/progress.h"
 
 #include <gsl/gsl_sort.h>
@@ -46,6 +47,25 @@ static void print_speed(const cp_vehicle_model *model, bool cars)
     printf("%-18s median %6.2f ms a run, p90 %6.2f ms, %6.0f runs/s on one core, paper/ours %.0f\n",
            cars ? "car to car" : "against barrier", middle_ms, ms[count * 9 / 10], 1e3 / middle_ms,
            PAPER_MS / middle_ms);
+}
+
+// One evaluation of a fit: every configuration of the reference study, on one core.
+static void print_evaluation(const cp_vehicle_model *model, const cp_reference *reference)
+{
+    double seconds[REPEATS], *olc_g = calloc(reference->count, sizeof *olc_g);
+    if (olc_g == NULL)
+        abort();
+    for (int repeat = 0; repeat < REPEATS; repeat++) {
+        cp_error error = {0};
+        double started_s = cp_clock_s();
+        if (cp_objective_olc(model, reference->cases, reference->count, NULL,
+                             cp_crash_options_default().time_step_s, 1, olc_g, &error) != CP_OK)
+            crash_builder_stop(&error);
+        seconds[repeat] = cp_clock_s() - started_s;
+    }
+    free(olc_g);
+    printf("OLC of %zu configurations: median %.3f s on one core\n", reference->count,
+           median(seconds, REPEATS));
 }
 
 static double olc_at_step(const cp_vehicle_model *model, bool cars, int k, double time_step_s)
@@ -94,6 +114,13 @@ int main(int argc, char **argv)
     printf("vehicle %s\n", model.name);
     for (int cars = 0; cars < 2; cars++)
         print_speed(&model, cars);
+    if (argc > 2) {
+        cp_reference reference;
+        if (cp_reference_load(argv[2], &reference, &error) != CP_OK)
+            crash_builder_stop(&error);
+        print_evaluation(&model, &reference);
+        cp_reference_destroy(&reference);
+    }
     for (int cars = 0; cars < 2; cars++)
         print_convergence(&model, cars);
     cp_crash_library_end();

@@ -126,7 +126,7 @@ static void write_fit(const experiment *twin)
 static void remove_files(const experiment *twin)
 {
     char path[256];
-    static const char *const NAMES[] = {"base.yaml", "twin.fit.yaml", "twin.yaml.fit.state"};
+    static const char *const NAMES[] = {"base.yaml", "twin.fit.yaml", "twin.yaml.start1.fit.state"};
     for (size_t k = 0; k < sizeof NAMES / sizeof *NAMES; k++) {
         snprintf(path, sizeof path, "%s/%s", twin->folder, NAMES[k]);
         unlink(path);
@@ -163,8 +163,8 @@ static void compare_held_out(const experiment *twin, const cp_vehicle_model *tru
     const cp_vehicle_model *cars[2] = {truth, found};
     for (size_t c = 0; c < 2; c++) {
         cp_error error = {0};
-        assert_int_equal(cp_objective_olc(cars[c], twin->held_out, twin->held_out_count, 0.0005, 1,
-                                          olc_g + c * twin->held_out_count, &error),
+        assert_int_equal(cp_objective_olc(cars[c], twin->held_out, twin->held_out_count, NULL,
+                                          0.0005, 1, olc_g + c * twin->held_out_count, &error),
                          CP_OK);
     }
     *mean_g = *largest_g = 0.0;

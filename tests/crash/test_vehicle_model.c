@@ -101,7 +101,7 @@ static void fields_must_fit_each_other(void **state)
                    "", "crash_box_collapse_end_m must not exceed");
     expect_refusal("vehicle: x\nparameters:\n  - {name: engine_gap_front_m, value: 0.75}\n", "",
                    "engine_gap_front_m");
-    expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: 600}\n", "", "mass_kg");
+    expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: 550}\n", "", "mass_kg");
 }
 
 int main(void)

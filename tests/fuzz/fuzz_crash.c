@@ -110,7 +110,10 @@ static bool all_finite(const cp_crash_result *result)
             for (size_t k = 0; k < result->pulse[c].sample_count; k++)
                 if (!isfinite(result->pulse[c].channel[channel][k]))
                     return false;
-    return isfinite(result->energy.kinetic_j) && isfinite(result->energy.highest_mechanical_j);
+    const cp_crash_energy *e = &result->energy;
+    return isfinite(e->kinetic_j + e->elastic_j + e->plastic_j + e->friction_j +
+                    e->contact_damping_j + e->joint_damping_j) &&
+           isfinite(e->highest_mechanical_j) && e->highest_mechanical_j > 0.0;
 }
 
 static void report(const fuzz_case *one, uint64_t index, const char *what)

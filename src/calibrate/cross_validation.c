@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calibrate/cross_validation.h"
+
+#include "core/log.h"
+#include "core/rng.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char *const KIND_WORD[CP_CROSS_KINDS] = {"fold", "speed", "offset", "angle"};
+
+void cp_cross_title(const cp_cross_validation *cross, char title[80])
+{
+    if (cross->kind == CP_CROSS_FOLDS)
+        snprintf(title, 80, "%zu-fold cross-validation", cross->part_count);
+    else
+        snprintf(title, 80, "One %s left out at a time", KIND_WORD[cross->kind]);
+}
+
+// Fold of every case: a seeded shuffle dealt out in turn.
+static size_t deal_folds(const cp_fit *fit, size_t *part)
+{
+    size_t count = fit->reference.count;
+    cp_rng_key key = cp_rng_key_text(cp_rng_key_seed(fit->seed), "folds");
+    for (size_t k = 0; k < count; k++)
+        part[k] = k % fit->folds;
+    for (size_t k = count; k > 1; k--) {
+        size_t other = (size_t)(cp_rng_uniform(key, k) * (double)k);
+        size_t keep = part[k - 1];
+        part[k - 1] = part[other];
+        part[other] = keep;
+    }
+    return fit->folds;
+}
+
+static double level_of(const cp_reference_case *row, cp_cross_kind kind)
+{
+    return kind == CP_CROSS_SPEED    ? row->speed_km_h
+           : kind == CP_CROSS_OFFSET ? row->offset_mm
+                                     : row->angle_deg;
+}
+
+// Cases of one level of a variable are one part; levels in order of first appearance.
+static size_t part_levels(const cp_fit *fit, cp_cross_kind kind, size_t *part)
+{
+    const cp_reference_case *cases = fit->reference.cases;
+    size_t parts = 0;
+    for (size_t k = 0; k < fit->reference.count; k++) {
+        part[k] = parts;
+        for (size_t j = 0; j < k && part[k] == parts; j++)
+            if (level_of(&cases[j], kind) == level_of(&cases[k], kind))
+                part[k] = part[j];
+        parts += part[k] == parts;
+    }
+    return parts;
+}
+
+static void part_stem(const cp_fit *fit, cp_cross_kind kind, size_t part, char stem[4096])
+{
+    snprintf(stem, 4096, "%s.%s%zu", fit->output_path, KIND_WORD[kind], part + 1);
+}
+
+// Fit without each part in turn, predict the part.
+static cp_status predict_parts(const cp_fit *fit, cp_cross_validation *cross, const size_t *part,
+                               bool *use, cp_fit_work *work, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t p = 0; status == CP_OK && p < cross->part_count; p++) {
+        cp_log_info("cross-validation: %s %zu of %zu", KIND_WORD[cross->kind], p + 1,
+                    cross->part_count);
+        for (size_t k = 0; k < fit->reference.count; k++)
+            use[k] = part[k] != p;
+        char stem[4096];
+        part_stem(fit, cross->kind, p, stem);
+        cp_vehicle_model model;
+        double value = 0.0;
+        status =
+            cp_fit_search(fit, use, stem, fit->seed + (uint32_t)p + 1, &model, &value, work, error);
+        for (size_t k = 0; status == CP_OK && k < fit->reference.count; k++)
+            if (!use[k])
+                cross->held_out_g[k] = work->olc_g[k];
+    }
+    return status;
+}
+
+cp_status cp_cross_validate(const cp_fit *fit, cp_cross_kind kind, cp_cross_validation *cross,
+                            cp_error *error)
+{
+    size_t count = fit->reference.count;
+    *cross = (cp_cross_validation){.kind = kind, .held_out_g = calloc(count, sizeof(double))};
+    size_t *part = calloc(count, sizeof *part);
+    bool *use = calloc(count, sizeof *use);
+    cp_fit_work work;
+    cp_status status = cp_fit_work_create(fit, &work, error);
+    if (cross->held_out_g == NULL || part == NULL || use == NULL)
+        status = cp_fail_memory(error, "cross-validation");
+    if (status == CP_OK) {
+        cross->part_count =
+            kind == CP_CROSS_FOLDS ? deal_folds(fit, part) : part_levels(fit, kind, part);
+        status = predict_parts(fit, cross, part, use, &work, error);
+    }
+    if (status == CP_OK)
+        status = cp_validate_olc(fit->reference.cases, cross->held_out_g, count, &cross->validation,
+                                 error);
+    free(part);
+    free(use);
+    cp_fit_work_destroy(&work);
+    return status;
+}
+
+void cp_cross_validation_destroy(cp_cross_validation *cross)
+{
+    free(cross->held_out_g);
+    *cross = (cp_cross_validation){0};
+}
+
+void cp_cross_validation_forget(const cp_fit *fit, const cp_cross_validation *cross)
+{
+    for (size_t p = 0; p < cross->part_count; p++) {
+        char stem[4096];
+        part_stem(fit, cross->kind, p, stem);
+        cp_fit_search_forget(fit, stem);
+    }
+}

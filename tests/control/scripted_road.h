@@ -16,7 +16,7 @@
 #define ROAD_CARS 8
 
 typedef struct road_car {
-    char id[16];
+    char id[32];
     cp_vehicle_state state;
     bool is_there;
     double curvature_1_m; /* of the way of its centre, left positive */

@@ -82,7 +82,7 @@ static double exact_way_m(const encounter *e, const cp_brake *brake, double time
 // Own speed at the first touch of the exact motion; NAN when there is none.
 static double exact_impact_m_s(const encounter *e, double *impact_s)
 {
-    const double fine_s = 1e-4;
+    const double fine_s = 5e-4;
     cp_brake brake = {INFINITY, JERK_M_S3, DECELERATION_M_S2};
     for (double time_s = 0.0; time_s < 12.0; time_s += fine_s) {
         double speed_m_s = e->own_m_s - cp_brake_speed_loss_m_s(&brake, time_s);
@@ -151,7 +151,7 @@ static void assert_as_exact(encounter e)
     bool is_slow_one_seen = false;
     int impacts = 0;
     double worst_m_s = 0.0;
-    for (e.ttc_s = 0.3; e.ttc_s < 2.5; e.ttc_s += 0.01) {
+    for (e.ttc_s = 0.3; e.ttc_s < 2.5; e.ttc_s += 0.02) {
         double exact_s = 0.0, stepped_s = 0.0;
         double exact_m_s = exact_impact_m_s(&e, &exact_s);
         if (!(exact_m_s >= 2.0))

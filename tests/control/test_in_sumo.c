@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "control/control.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -15,6 +16,7 @@ typedef struct outcome {
     int collisions;     /* reports of SUMO's, one a step and pair */
     int one_at_fault;   /* of these, with exactly one of the two at fault */
     int fault_at_home;  /* vehicles at fault on a lane of the direction they are named after */
+    double fastest_m_s; /* of those who have driven 600 m */
     char *counters;     /* freed by the caller */
 } outcome;
 
@@ -62,9 +64,12 @@ static outcome run(const char *scenario, double duration_s, const cp_control_set
             fail_msg("%s", error.text);
         size_t vehicles;
         const cp_vehicle_motion *motions = cp_traffic_motions(traffic, &vehicles);
-        for (size_t k = 0; k < vehicles; k++)
+        for (size_t k = 0; k < vehicles; k++) {
             found.fingerprint +=
                 (double)(k + 1) * (motions[k].after.front_x_m + motions[k].after.speed_m_s);
+            if (motions[k].after.lane_position_m > 600.0)
+                found.fastest_m_s = fmax(found.fastest_m_s, motions[k].after.speed_m_s);
+        }
         look_at_collisions(controls, traffic, &found);
     }
     assert_int_equal(cp_controls_counters_json(controls, &found.counters, &error), CP_OK);
@@ -84,10 +89,15 @@ static cp_control_settings with(cp_control_kind kind, const char *name, double f
 static void nobody_equipped_is_the_baseline_bit_for_bit(void **unused)
 {
     (void)unused;
-    cp_control_settings settings[2] = {with(CP_CONTROL_DRIVER_ERROR, "failed_to_see", 0.5),
-                                       with(CP_CONTROL_FUNCTION, "aeb", 0.0)};
+    // Every function there is.
+    cp_control_settings settings[16] = {with(CP_CONTROL_DRIVER_ERROR, "failed_to_see", 0.5)};
+    size_t count = 1;
+    for (size_t k = 0; k < CP_CONTROL_TYPE_COUNT; k++)
+        if (CP_CONTROL_TYPE[k]->kind == CP_CONTROL_FUNCTION)
+            settings[count++] = with(CP_CONTROL_FUNCTION, CP_CONTROL_TYPE[k]->name, 0.0);
+    assert_true(count >= 5);
     outcome baseline = run("left_turn", 120.0, settings, 1);
-    outcome nobody = run("left_turn", 120.0, settings, 2);
+    outcome nobody = run("left_turn", 120.0, settings, count);
     settings[1] = with(CP_CONTROL_FUNCTION, "aeb", 1.0);
     outcome everybody = run("left_turn", 120.0, settings, 2);
     assert_true(nobody.fingerprint == baseline.fingerprint);
@@ -95,6 +105,19 @@ static void nobody_equipped_is_the_baseline_bit_for_bit(void **unused)
     free(baseline.counters);
     free(nobody.counters);
     free(everybody.counters);
+}
+
+static void isa_keeps_to_the_speed_limit(void **unused)
+{
+    (void)unused;
+    // 80 km/h; a car that comes faster than that slows down first.
+    cp_control_settings isa = with(CP_CONTROL_FUNCTION, "isa", 1.0);
+    outcome free_driving = run("head_on_overtaking", 150.0, NULL, 0);
+    outcome limited = run("head_on_overtaking", 150.0, &isa, 1);
+    assert_true(free_driving.fastest_m_s > 23.5);
+    assert_true(limited.fastest_m_s < 22.23);
+    free(free_driving.counters);
+    free(limited.counters);
 }
 
 static void ordinary_two_way_traffic_never_triggers(void **unused)
@@ -138,6 +161,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nobody_equipped_is_the_baseline_bit_for_bit),
+        cmocka_unit_test(isa_keeps_to_the_speed_limit),
         cmocka_unit_test(ordinary_two_way_traffic_never_triggers),
         cmocka_unit_test(who_fails_to_see_crashes),
         cmocka_unit_test(who_overtakes_riskily_is_at_fault),

@@ -50,7 +50,7 @@ static drift first_drift(double step_s, int companions)
     cp_traffic *traffic = road_open(step_s);
     cp_controls *controls = create(traffic, 1);
     for (int k = 0; k < companions; k++) {
-        char id[16];
+        char id[32];
         snprintf(id, sizeof id, "companion%d", k);
         road_add(id, 0.0, 1000.0 * (k + 1), 0.0, 20.0);
     }

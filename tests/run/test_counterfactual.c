@@ -80,7 +80,7 @@ static void write_study(const fixture *f, const char *name, const char *design,
              "design: %s\n"
              "seed: 5\n"
              "replications: 1\n"
-             "duration_s: 150\n"
+             "duration_s: 100\n"
              "scenarios:\n"
              "  - name: crossing\n"
              "    sumocfg: crossing.sumocfg\n"
@@ -144,6 +144,37 @@ static void run(const fixture *f, const char *name)
     assert_ok(cp_runner_run(&options, &summary, &error), &error);
 }
 
+static const char TREATMENTS[] = "  - name: nothing\n"
+                                 "  - name: aeb\n"
+                                 "    functions:\n"
+                                 "      - function: aeb\n"
+                                 "        parameters: {ttc_s: 1.4, deceleration_m_s2: 9}\n"
+                                 "  - name: nobody\n"
+                                 "    functions:\n"
+                                 "      - function: aeb\n"
+                                 "        parameters: {penetration_1: 0}\n";
+
+// The same traffic without branches, with them, and with time series besides; the first two also
+// write what SUMO can write.
+static int runs_begin(void **state)
+{
+    int failed = fixture_begin(state);
+    const fixture *f = *state;
+    static const char *const DESIGNS[][2] = {{"plain", "paired_seeds"},
+                                             {"pairs", "counterfactual"}};
+    for (int k = 0; failed == 0 && k < 2; k++) {
+        char options[PATH_SIZE];
+        snprintf(options, sizeof options,
+                 "--fcd-output, \"%s/%s.fcd.xml\", --tripinfo-output, \"%s/%s.trip.xml\"",
+                 f->folder, DESIGNS[k][0], f->folder, DESIGNS[k][0]);
+        write_study(f, DESIGNS[k][0], DESIGNS[k][1], options, k == 0 ? "" : TREATMENTS);
+        run(f, DESIGNS[k][0]);
+    }
+    write_study(f, "series", "counterfactual\ncounterfactual: {time_series_s: 3}", "", TREATMENTS);
+    run(f, "series");
+    return failed;
+}
+
 static double number_of(const fixture *f, const char *name, const char *sql)
 {
     char db[PATH_SIZE];
@@ -157,21 +188,9 @@ static double number_of(const fixture *f, const char *name, const char *sql)
     return value;
 }
 
-static const char TREATMENTS[] = "  - name: nothing\n"
-                                 "  - name: aeb\n"
-                                 "    functions:\n"
-                                 "      - function: aeb\n"
-                                 "        parameters: {ttc_s: 1.4, deceleration_m_s2: 9}\n"
-                                 "  - name: nobody\n"
-                                 "    functions:\n"
-                                 "      - function: aeb\n"
-                                 "        parameters: {penetration_1: 0}\n";
-
 static void null_treatment_reproduces_and_outcomes_add_up(void **state)
 {
     const fixture *f = *state;
-    write_study(f, "pairs", "counterfactual", "", TREATMENTS);
-    run(f, "pairs");
     double crashes = number_of(f, "pairs", "SELECT count(*) FROM crash");
     assert_true(crashes >= 8);
     assert_true(number_of(f, "pairs", "SELECT count(*) FROM null_treatment") == crashes);
@@ -245,17 +264,6 @@ static void assert_same_tables(const fixture *f, const char *one, const char *ot
 static void branches_leave_the_baseline_and_its_outputs_alone(void **state)
 {
     const fixture *f = *state;
-    char options[PATH_SIZE];
-    snprintf(options, sizeof options,
-             "--fcd-output, \"%s/plain.fcd.xml\", --tripinfo-output, \"%s/plain.trip.xml\"",
-             f->folder, f->folder);
-    write_study(f, "plain", "paired_seeds", options, "");
-    run(f, "plain");
-    snprintf(options, sizeof options,
-             "--fcd-output, \"%s/pairs.fcd.xml\", --tripinfo-output, \"%s/pairs.trip.xml\"",
-             f->folder, f->folder);
-    write_study(f, "pairs", "counterfactual", options, TREATMENTS);
-    run(f, "pairs");
     assert_true(number_of(f, "pairs", "SELECT count(*) FROM counterfactual") > 0);
     assert_same_files(f, "plain.fcd.xml", "pairs.fcd.xml");
     assert_same_files(f, "plain.trip.xml", "pairs.trip.xml");
@@ -265,11 +273,7 @@ static void branches_leave_the_baseline_and_its_outputs_alone(void **state)
 static void time_series_on_demand(void **state)
 {
     const fixture *f = *state;
-    write_study(f, "plain", "counterfactual", "", TREATMENTS);
-    run(f, "plain");
-    assert_true(number_of(f, "plain", "SELECT count(*) FROM counterfactual_sample") == 0);
-    write_study(f, "series", "counterfactual\ncounterfactual: {time_series_s: 3}", "", TREATMENTS);
-    run(f, "series");
+    assert_true(number_of(f, "pairs", "SELECT count(*) FROM counterfactual_sample") == 0);
     assert_same_tables(f, "plain", "series");
     assert_true(number_of(f, "series",
                           "SELECT count(*) FROM null_treatment AS n WHERE status = 'reproduced' "
@@ -291,11 +295,9 @@ static void time_series_on_demand(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(null_treatment_reproduces_and_outcomes_add_up,
-                                        fixture_begin, fixture_end),
-        cmocka_unit_test_setup_teardown(branches_leave_the_baseline_and_its_outputs_alone,
-                                        fixture_begin, fixture_end),
-        cmocka_unit_test_setup_teardown(time_series_on_demand, fixture_begin, fixture_end),
+        cmocka_unit_test(null_treatment_reproduces_and_outcomes_add_up),
+        cmocka_unit_test(branches_leave_the_baseline_and_its_outputs_alone),
+        cmocka_unit_test(time_series_on_demand),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, runs_begin, fixture_end);
 }

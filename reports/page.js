@@ -574,7 +574,7 @@
         car.append("rect").attr("x", -f[3] / 2).attr("y", -part.width_m / 2).attr("width", f[3]).attr("height", part.width_m).attr("rx", part.radius_m)
           .attr("transform", `translate(${f[0]},${f[1]}) rotate(${degrees(f[2])})`).style("fill", `var(--v${role ? 2 : 1})`).style("fill-opacity", part.name === "body" ? 0.18 : 0.55).style("stroke", `var(--v${role ? 2 : 1})`).style("stroke-width", 0.03);
       });
-      car.append("text").attr("transform", "scale(1,-1)").attr("text-anchor", "middle").attr("dy", "0.35em").style("font-size", "0.7px").style("font-weight", 600).text(v.role);
+      car.append("text").attr("transform", `rotate(${-degrees(p[2])}) scale(1,-1)`).attr("text-anchor", "middle").attr("dy", "0.35em").style("font-size", "0.7px").style("font-weight", 600).text(v.role);
     });
     svg.append("text").attr("x", 8).attr("y", 18).text(`${fixed(run.times_ms[frameNumber], 0)} ms`);
   }
@@ -585,6 +585,7 @@
     const shown = data.gallery.filter(e => state.variants.has(indexOf(e.variant)) && (state.scenario === "" || e.scenario === state.scenario) &&
       (state.crashType === "" || e.crash_type === state.crashType) && (state.scope === "all" || e.inside));
     if (shown.length === 0) element(parent, "p", "No crash of the gallery is in this selection.", { class: "empty" });
+    const firstFrames = [];
     shown.forEach(entry => {
       const card = element(parent, "article", undefined, { class: "card crash" });
       card.style.setProperty("--colour", colour(indexOf(entry.variant)));
@@ -605,8 +606,10 @@
         button.textContent = "Stop";
         timer = d3.interval(() => { if (k >= run.times_ms.length - 1) stop(); else show(++k); }, 70);
       };
-      show(0);
+      firstFrames.push(() => show(0));
     });
+    // Cards have their width only when all of them are there.
+    firstFrames.forEach(draw => draw());
   }
 
   // ---- cards and tables --------------------------------------------------------------------------------
@@ -768,7 +771,7 @@
     const parent = document.getElementById("reproduce"), about = data.about, study = data.study;
     facts(parent, [
       ["Study file", `${study.name}, SHA-256 ${study.hash}`],
-      ["Study seed", String(study.seed)],
+      ["Study seed", data.sample.seed],
       ["Programs", about.versions.map(v => `crashpulse ${v.crashpulse_version}, SUMO ${v.sumo_version} (${v.replications} replications)`).join("; ")],
       ["Vehicle models", about.vehicle_models.map(m => `${m.name}, SHA-256 ${m.hash}`).join("; ")],
       ["Scenarios", about.scenarios.map(s => s.sumocfg).join(", ")],

@@ -12,6 +12,7 @@
     X(crash_sites)                                                                                 \
     X(counterfactual_outcomes)                                                                     \
     X(expected_injuries)                                                                           \
+    X(pulses)                                                                                      \
     X(worst_crashes)                                                                               \
     X(reproducibility)
 

@@ -58,10 +58,11 @@ static cp_status film_crash(cp_store *store, const cp_study_data *data, size_t v
     if (status == CP_OK && match == CP_STORED_DIFFERENT)
         cp_log_warning("crash %lld simulated again gives other pulses than stored",
                        (long long)crash->id);
-    json_t *entry = json_pack(
-        "{s:s, s:s, s:s, s:I, s:s, s:f}", "variant", data->variant[r->variant].name, "scenario",
-        data->scenario[r->scenario].name, "crash_type", data->crash_type[crash->crash_type],
-        "crash_id", (json_int_t)crash->id, "why", why, "time_s", crash->time_s);
+    json_t *entry =
+        json_pack("{s:s, s:s, s:s, s:o, s:s, s:f}", "variant", data->variant[r->variant].name,
+                  "scenario", data->scenario[r->scenario].name, "crash_type",
+                  data->crash_type[crash->crash_type], "crash_id",
+                  json_sprintf("%lld", (long long)crash->id), "why", why, "time_s", crash->time_s);
     json_object_set_new(entry, "olc_g", cp_number_json(data->vehicle[vehicle].olc_g));
     json_object_set_new(entry, "inside", json_boolean(data->vehicle[vehicle].validity == 0));
     if (status == CP_OK) {

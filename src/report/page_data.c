@@ -372,9 +372,9 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
             variants_json(data, baseline), "validity",
             texts_json(data->validity, data->validity_count), "validity_counts", p.counts, "slices",
             p.slices, "vehicles", vehicles_json(data, chance), "sample",
-            json_pack("{s:f, s:I, s:I, s:I}", "chance", chance, "seed", (json_int_t)data->seed,
-                      "frontal_crashes", (json_int_t)frontal, "pulses",
-                      (json_int_t)CP_CORRIDOR_PULSES_MAX),
+            json_pack("{s:f, s:o, s:I, s:I}", "chance", chance, "seed",
+                      json_sprintf("%llu", (unsigned long long)data->seed), "frontal_crashes",
+                      (json_int_t)frontal, "pulses", (json_int_t)CP_CORRIDOR_PULSES_MAX),
             "networks", p.networks, "gallery", p.gallery, "risks", risks_json(data), "queries",
             queries_json());
         if (!*page)

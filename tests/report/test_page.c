@@ -2,6 +2,7 @@
 #include "report/page.h"
 
 #include "report/page_data.h"
+#include "store/query.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -57,6 +58,21 @@ static void data_is_safe_in_a_script_and_unchanged(void **state)
         json_string_value(json_object_get(json_object_get(back, "study"), "question"));
     assert_non_null(strstr(question, "</script><script>"));
     assert_int_equal(json_array_size(json_object_get(back, "slices")), 3 * 4);
+
+    // Ids of crashes have 63 bits, more than a script's numbers: they are text, and true.
+    size_t place;
+    json_t *entry;
+    json_array_foreach(json_object_get(back, "gallery"), place, entry)
+    {
+        char sql[128];
+        double there = 0.0;
+        const char *id = json_string_value(json_object_get(entry, "crash_id"));
+        assert_non_null(id);
+        snprintf(sql, sizeof sql, "SELECT count(*) FROM crash WHERE id = %.40s", id);
+        assert_int_equal(cp_query_number(store, sql, &there, &error), CP_OK);
+        assert_true(there == 1.0);
+    }
+    assert_int_equal(json_array_size(json_object_get(back, "gallery")), 4);
     json_decref(back);
     free(text);
     json_decref(page);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# build_small_study.sh DATABASE: the invented study of small_study.sql in a new database, by way of
-# the project's own schema files.
+# build_small_study.sh DATABASE [NAME]: the invented study of NAME.sql (default: small_study) in a new
+# database, by way of the project's own schema files.
 set -eu
 here=$(dirname "$0")
 rm -f "$1" "$1-wal" "$1-shm"
@@ -11,7 +11,7 @@ version=0
         cat "$file"
         version=$((version + 1))
     done
-    cat "$here/../../db/views.sql" "$here/small_study.sql"
+    cat "$here/../../db/views.sql" "$here/${2:-small_study}.sql"
     # "CPLS", and the number of schema files
     echo "PRAGMA application_id = 0x43504c53; PRAGMA user_version = $version;"
 } | sqlite3 -batch -bail "$1"

@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The report of a counterfactual study: the flow adds up and agrees with SQL."""
+import argparse
+import pathlib
+import sqlite3
+import subprocess
+import unittest
+
+from webdriver import Browser
+
+parser = argparse.ArgumentParser()
+parser.add_argument("--crashpulse", required=True)
+parser.add_argument("--db", required=True)
+parser.add_argument("--output", required=True, help="folder for the report and a screenshot")
+ARGS = parser.parse_args()
+OUTPUT = pathlib.Path(ARGS.output)
+
+
+class Counterfactual(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        OUTPUT.mkdir(parents=True, exist_ok=True)
+        report = OUTPUT / "counterfactual.html"
+        subprocess.run([ARGS.crashpulse, "report", ARGS.db, "--output", report], check=True)
+        cls.db = sqlite3.connect(f"file:{ARGS.db}?mode=ro", uri=True)
+        cls.browser = Browser().__enter__()
+        cls.addClassCleanup(cls.browser.__exit__)
+        cls.browser.open(report.resolve().as_uri())
+        cls.browser.settle()
+
+    def test_flow_agrees_with_sql(self):
+        for scenario in ("", "left_turn"):
+            self.browser.run("""const s = document.getElementById("scenario"); s.value = arguments[0];
+                                s.dispatchEvent(new Event("change"));""", scenario)
+            text = self.browser.run("return document.getElementById('figure-flow').querySelector('svg').textContent")
+            rows = self.db.execute("""SELECT outcome, count(*) FROM counterfactual_pair WHERE variant = 'aeb'
+                AND baseline_crash_type LIKE 'front-%' AND (?1 = '' OR scenario = ?1) GROUP BY 1""", (scenario,)).fetchall()
+            for outcome, count in rows:
+                self.assertIn(f"{outcome.replace('_', ' ')} {count}", text)
+            self.assertIn(f"{sum(count for _, count in rows)} crashes", text)
+
+    def test_paired_change_has_both_readings(self):
+        text = self.browser.run("return document.getElementById('figure-difference').querySelector('svg').textContent")
+        self.assertIn("avoided = 0 g", text)
+        self.assertIn("conditional on crashing", text)
+
+    def test_console_is_quiet_and_a_picture_is_left(self):
+        self.assertEqual([e["message"] for e in self.browser.log("browser")], [])
+        self.browser.run("document.getElementById('figure-flow').scrollIntoView()")
+        self.browser.screenshot(OUTPUT / "counterfactual.png")
+        self.assertGreater((OUTPUT / "counterfactual.png").stat().st_size, 20000)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["test_counterfactual.py"], verbosity=1)

@@ -5,11 +5,43 @@
 
 #include <math.h>
 
+/* A distribution function of x with two parameters. */
+typedef double (*cdf)(double x, double a, double b);
+
+// Where a distribution function reaches p, by bisection to neighbouring doubles: GSL's own inverses
+// of gamma and beta give up on counts of some ten thousand. NAN where the function does not exist.
+static double quantile(cdf function, double p, double a, double b, double low, double high)
+{
+    for (;;) {
+        double middle = 0.5 * low + 0.5 * high;
+        if (!(middle > low && middle < high))
+            return high;
+        double reached = function(middle, a, b);
+        if (isnan(reached))
+            return NAN;
+        if (reached >= p)
+            high = middle;
+        else
+            low = middle;
+    }
+}
+
 cp_interval cp_rate_garwood(double events, double level_1)
 {
-    double tail = 0.5 * (1.0 - level_1);
-    double low = events > 0.0 ? gsl_cdf_gamma_Pinv(tail, events, 1.0) : 0.0;
-    return (cp_interval){CP_INTERVAL_VALUE, low, gsl_cdf_gamma_Qinv(tail, events + 1.0, 1.0)};
+    if (events > 1e5) {
+        // Wilson and Hilferty 1931, exact to some 1e-9 of itself for such counts; GSL has no gamma
+        // distribution function far from the mean of millions.
+        double z = gsl_cdf_ugaussian_Pinv(0.5 * (1.0 + level_1)), n = events + 1.0;
+        double low = events * pow(1.0 - 1.0 / (9.0 * events) - z / (3.0 * sqrt(events)), 3.0);
+        double high = n * pow(1.0 - 1.0 / (9.0 * n) + z / (3.0 * sqrt(n)), 3.0);
+        return (cp_interval){CP_INTERVAL_VALUE, low, high};
+    }
+    // Brackets of 12 standard deviations: far outside, GSL cannot evaluate the function either.
+    double tail = 0.5 * (1.0 - level_1), reach = 12.0 * sqrt(events + 1.0) + 30.0;
+    double least = fmax(0.0, events - reach), most = events + 1.0 + reach;
+    double low = events > 0.0 ? quantile(gsl_cdf_gamma_P, tail, events, 1.0, least, most) : 0.0;
+    double high = quantile(gsl_cdf_gamma_P, 1.0 - tail, events + 1.0, 1.0, least, most);
+    return (cp_interval){CP_INTERVAL_VALUE, low, high};
 }
 
 double cp_rate_dispersion(const cp_exposure *exposure, const size_t *stratum)
@@ -96,9 +128,18 @@ cp_interval cp_rate_ratio_poisson(const cp_exposure *a, const cp_exposure *b, do
 
     // Given the sum, b's count is binomial with share s; the ratio is s/(1-s) over the exposures.
     double tail = 0.5 * (1.0 - level_1);
-    double low = events_b > 0.0 ? gsl_cdf_beta_Pinv(tail, events_b, events_a + 1.0) : 0.0;
-    double high = events_a > 0.0 ? gsl_cdf_beta_Qinv(tail, events_b + 1.0, events_a) : 1.0;
+    double low =
+        events_b > 0.0 ? quantile(gsl_cdf_beta_P, tail, events_b, events_a + 1.0, 0.0, 1.0) : 0.0;
+    double high = events_a > 0.0
+                      ? quantile(gsl_cdf_beta_P, 1.0 - tail, events_b + 1.0, events_a, 0.0, 1.0)
+                      : 1.0;
     double scale = exposure_a / exposure_b;
+    if (isnan(low) || isnan(high)) {
+        // Millions of events: the normal interval of the log ratio is exact to their inverse.
+        double reach = gsl_cdf_ugaussian_Pinv(1.0 - tail) * sqrt(1.0 / events_a + 1.0 / events_b);
+        double ratio = scale * events_b / events_a;
+        return (cp_interval){CP_INTERVAL_VALUE, ratio * exp(-reach), ratio * exp(reach)};
+    }
     return (cp_interval){CP_INTERVAL_VALUE, scale * low / (1.0 - low),
                          high < 1.0 ? scale * high / (1.0 - high) : INFINITY};
 }

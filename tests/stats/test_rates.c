@@ -149,10 +149,29 @@ static void ratio_bootstrap_has_the_truth_and_uses_pairs(void **state)
     assert_true(paired.high - paired.low < 0.2 * (apart.high - apart.low));
 }
 
+// Counts of large studies, where GSL's inverses end the program: close to the normal intervals.
+static void large_counts_have_intervals(void **state)
+{
+    (void)state;
+    for (double n = 1e3; n <= 1e7; n *= 10.0) {
+        cp_interval i = cp_rate_garwood(n, 0.95);
+        double wider = 0.6 / sqrt(n) + 1e-3; // exact intervals allow for whole counts
+        assert_near((i.high - i.low) / (2.0 * 1.959964 * sqrt(n)), 1.0, wider);
+        assert_true(i.low < n && n < i.high);
+        double b = 0.51 * n, km = 10.0;
+        cp_exposure ea = {1, &n, &km}, eb = {1, &b, &km};
+        cp_interval ratio = cp_rate_ratio_poisson(&ea, &eb, 0.95);
+        double se = sqrt(1.0 / n + 1.0 / b);
+        assert_near(log(ratio.high / ratio.low) / (2.0 * 1.959964 * se), 1.0, wider);
+        assert_true(ratio.low < 0.51 && 0.51 < ratio.high);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(garwood_agrees_with_the_tables),
+        cmocka_unit_test(large_counts_have_intervals),
         cmocka_unit_test(dispersion_is_variance_over_mean),
         cmocka_unit_test(dispersion_is_within_strata_and_per_exposure),
         cmocka_unit_test(rate_and_ratio_are_of_sums),

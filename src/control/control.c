@@ -2,6 +2,7 @@
 #include "control/control.h"
 
 #include "control/control_types.h"
+#include "control/driver_error/ignored_foes.h"
 
 #include <jansson.h>
 #include <stdio.h>
@@ -24,6 +25,7 @@ struct cp_controls {
     const cp_traffic *traffic;
     cp_actuation actuation;
     char *only[2]; /* of a treatment: the ids of its two vehicles */
+    cp_ignored_foes *ignored;
 };
 
 const cp_control_type *cp_control_type_find(cp_control_kind kind, const char *name)
@@ -74,6 +76,7 @@ static cp_status create_one(cp_controls *controls, active_control *active,
     };
     active->context = (cp_control_context){
         .traffic = controls->traffic,
+        .ignored = controls->ignored,
         .seed_key = cp_rng_key_text(replication_key, settings->type->name),
         .parameter = active->settings.parameter,
         .equipment = &active->equipment,
@@ -108,7 +111,9 @@ cp_status cp_controls_create(const cp_control_settings *settings, size_t count, 
     if (!created)
         return cp_fail_memory(error, "controls");
     created->traffic = traffic;
-    cp_status status = create_all(settings, count, study_seed, replication_seed, created, error);
+    cp_status status = cp_ignored_foes_create(&created->ignored, error);
+    if (status == CP_OK)
+        status = create_all(settings, count, study_seed, replication_seed, created, error);
     if (status != CP_OK) {
         cp_controls_destroy(created);
         return status;
@@ -140,6 +145,7 @@ void cp_controls_destroy(cp_controls *controls)
     cp_actuation_destroy(&controls->actuation);
     free(controls->only[0]);
     free(controls->only[1]);
+    cp_ignored_foes_destroy(controls->ignored);
     free(controls);
 }
 
@@ -154,6 +160,9 @@ cp_status cp_controls_step(cp_controls *controls, cp_error *error)
             return status;
         }
     }
+    cp_status status = cp_ignored_foes_send(controls->ignored, controls->traffic, error);
+    if (status != CP_OK)
+        return status;
     return cp_actuation_apply(&controls->actuation, controls->traffic, error);
 }
 

@@ -39,9 +39,10 @@ typedef struct cp_control_parameter {
 typedef struct cp_control_context {
     const cp_traffic *traffic;
     cp_rng_key seed_key;
-    const double *parameter; /* by index of the type's parameter table */
-    cp_equipment *equipment; /* of functions: who has it */
-    cp_actuation *actuation; /* of functions: where to ask for braking */
+    const double *parameter;         /* by index of the type's parameter table */
+    cp_equipment *equipment;         /* of functions: who has it */
+    cp_actuation *actuation;         /* of functions: where to ask for braking */
+    struct cp_ignored_foes *ignored; /* shared by all (driver_error/ignored_foes.h) */
 } cp_control_context;
 
 /* A kind of control. create/step/destroy handle its mutable state of one replication. */

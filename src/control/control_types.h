@@ -13,6 +13,12 @@
     X(CP_CONTROL_RISKY_OVERTAKING)                                                                 \
     /* inattention: the car drifts off its lane */                                                 \
     X(CP_CONTROL_LANE_DRIFT)                                                                       \
+    /* a driver takes a gap at a junction for larger than it is */                                 \
+    X(CP_CONTROL_MISJUDGED_GAP)                                                                    \
+    /* a share of drivers runs red lights */                                                       \
+    X(CP_CONTROL_RED_LIGHT)                                                                        \
+    /* a driver looks up late and brakes weakly */                                                 \
+    X(CP_CONTROL_LATE_BRAKING)                                                                     \
     /* automatic emergency braking */                                                              \
     X(CP_CONTROL_AEB)                                                                              \
     /* forward collision warning: the driver brakes after a reaction time */                       \

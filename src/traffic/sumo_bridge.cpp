@@ -63,7 +63,7 @@ struct SpeedCommand {
 struct Bridge {
     bool running = false;
     std::string command_line;
-    Names vehicles, types, lanes, collision_types;
+    Names vehicles, types, lanes, lights, collision_types;
     std::vector<Size> size_of_type;
     std::vector<cp_vehicle_state> states;
     std::vector<uint32_t> departed, gone, present, present_before;
@@ -668,6 +668,17 @@ cp_status sumo_bridge_speed_factor(uint32_t vehicle, double *factor_1, cp_error 
     *factor_1 = 0.0;
     return command_vehicle("get speed factor", vehicle, error, [=](const std::string &id) {
         *factor_1 = libsumo::Vehicle::getSpeedFactor(id);
+    });
+}
+
+cp_status sumo_bridge_next_light(uint32_t vehicle, cp_next_light *light, cp_error *error)
+{
+    *light = {HUGE_VAL, SUMO_BRIDGE_NONE, false};
+    return command_vehicle("next traffic light", vehicle, error, [=](const std::string &id) {
+        const auto lights = libsumo::Vehicle::getNextTLS(id);
+        if (!lights.empty())
+            *light = {lights[0].dist, bridge->lights.number(lights[0].id),
+                      lights[0].state == 'r' || lights[0].state == 'R'};
     });
 }
 

@@ -52,6 +52,13 @@ typedef struct cp_sumo_collision {
     const char *type; /* "collision", "frontal", "junction", ... */
 } cp_sumo_collision;
 
+/* The next traffic light on a vehicle's route. */
+typedef struct cp_next_light {
+    double distance_m; /* to its stop line; INFINITY when there is none */
+    uint32_t number;   /* of the light; SUMO_BRIDGE_NONE when there is none */
+    bool is_red;       /* for this vehicle, now */
+} cp_next_light;
+
 /* How the roads of two vehicles lie to each other. */
 typedef enum cp_road_relation {
     CP_ROADS_MEET,        /* same road (either direction), or one junction, within the longer
@@ -100,6 +107,10 @@ CP_MUST_CHECK cp_status sumo_bridge_road_relation(const cp_vehicle_state *one,
 
 /* Width of a lane, m. */
 CP_MUST_CHECK cp_status sumo_bridge_lane_width(uint32_t lane, double *width_m, cp_error *error);
+
+/* The traffic light a vehicle comes to next. */
+CP_MUST_CHECK cp_status sumo_bridge_next_light(uint32_t vehicle, cp_next_light *light,
+                                               cp_error *error);
 
 /* Names; "" for a number never given out. */
 const char *sumo_bridge_vehicle_id(uint32_t vehicle);

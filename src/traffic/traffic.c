@@ -207,6 +207,15 @@ const uint32_t *cp_traffic_departed(const cp_traffic *traffic, size_t *count)
     return traffic->departed;
 }
 
+cp_status cp_traffic_next_light(const cp_traffic *traffic, uint32_t vehicle, cp_next_light *light,
+                                cp_error *error)
+{
+    *light = (cp_next_light){.distance_m = INFINITY, .number = SUMO_BRIDGE_NONE};
+    if (traffic->source->next_light == NULL)
+        return CP_OK;
+    return traffic->source->next_light(vehicle, light, error);
+}
+
 cp_status cp_traffic_road_relation(const cp_traffic *traffic, const cp_vehicle_state *one,
                                    const cp_vehicle_state *other, cp_road_relation *relation,
                                    cp_error *error)

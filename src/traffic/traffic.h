@@ -37,6 +37,8 @@ typedef struct cp_traffic_source {
                                cp_error *error);
     /* May be NULL: all lanes are SUMO's default, 3.2 m wide. */
     cp_status (*lane_width)(uint32_t lane, double *width_m, cp_error *error);
+    /* May be NULL: there are no lights. */
+    cp_status (*next_light)(uint32_t vehicle, cp_next_light *light, cp_error *error);
     /* May be NULL: all roads meet. */
     cp_status (*road_relation)(const cp_vehicle_state *one, const cp_vehicle_state *other,
                                cp_road_relation *relation, cp_error *error);
@@ -77,6 +79,9 @@ const cp_vehicle_motion *cp_traffic_motions(const cp_traffic *traffic, size_t *c
 const cp_vehicle_motion *cp_traffic_motion_of(const cp_traffic *traffic, uint32_t vehicle);
 /* Vehicles inserted in the last step, in SUMO's order; valid until the next step. */
 const uint32_t *cp_traffic_departed(const cp_traffic *traffic, size_t *count);
+/* The traffic light a vehicle comes to next (sumo_bridge.h). */
+CP_MUST_CHECK cp_status cp_traffic_next_light(const cp_traffic *traffic, uint32_t vehicle,
+                                              cp_next_light *light, cp_error *error);
 /* Whether two vehicles that touch in the plane can do so on the ground (sumo_bridge.h). */
 CP_MUST_CHECK cp_status cp_traffic_road_relation(const cp_traffic *traffic,
                                                  const cp_vehicle_state *one,

@@ -16,6 +16,7 @@ static const cp_traffic_source SUMO = {
     .speed_factor = sumo_bridge_speed_factor,
     .set_parameter = sumo_bridge_set_parameter,
     .lane_width = sumo_bridge_lane_width,
+    .next_light = sumo_bridge_next_light,
     .road_relation = sumo_bridge_road_relation,
     .stop = sumo_bridge_stop,
 };

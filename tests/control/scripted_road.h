@@ -23,6 +23,7 @@ typedef struct road_car {
     double command_m_s;   /* < 0: none */
     int mode;
     char key[64], value[256]; /* of the last parameter set */
+    cp_next_light light;      /* none unless number is set */
 } road_car;
 
 static struct road {
@@ -129,6 +130,13 @@ static cp_status road_set_parameter(uint32_t vehicle, const char *key, const cha
     return CP_OK;
 }
 
+static cp_status road_next_light(uint32_t vehicle, cp_next_light *light, cp_error *error)
+{
+    (void)error;
+    *light = road.cars[vehicle].light;
+    return CP_OK;
+}
+
 static void road_stop(void)
 {
 }
@@ -143,6 +151,7 @@ static const cp_traffic_source ROAD = {
     .set_speed_mode = road_set_speed_mode,
     .speed_mode = road_speed_mode,
     .set_parameter = road_set_parameter,
+    .next_light = road_next_light,
     .stop = road_stop,
 };
 
@@ -174,6 +183,7 @@ static inline road_car *road_add(const char *id, double x_m, double y_m, double 
     car->is_there = true;
     car->command_m_s = -1.0;
     car->mode = 31;
+    car->light = (cp_next_light){.distance_m = INFINITY, .number = SUMO_BRIDGE_NONE};
     road.count++;
     return car;
 }

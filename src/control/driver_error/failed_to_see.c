@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "control/control_types.h"
 
+#include "control/driver_error/ignored_foes.h"
 #include "core/geometry.h"
 
 #include <stdlib.h>
@@ -19,17 +20,10 @@ static const cp_control_parameter PARAMETERS[] = {
                        "once per ordered pair (assumed; not calibrated to accident statistics)"},
 };
 
-/* Whom one driver overlooks. */
-typedef struct blind_spot {
-    uint32_t *foes;
-    size_t count;
-    size_t capacity;
-    bool is_known; /* drawn against all known others */
-} blind_spot;
-
 typedef struct failed_to_see {
     const cp_traffic *traffic;
-    blind_spot *spots; /* by vehicle number */
+    cp_ignored_foes *ignored;
+    bool *is_known; /* by vehicle number: drawn against all others on the road */
     size_t numbers;
     size_t pairs;      /* drawn */
     size_t overlooked; /* of these, true */
@@ -41,6 +35,7 @@ static cp_status create(const cp_control_context *context, void **state, cp_erro
     if (!created)
         return cp_fail_memory(error, "failed_to_see");
     created->traffic = context->traffic;
+    created->ignored = context->ignored;
     *state = created;
     return CP_OK;
 }
@@ -48,9 +43,7 @@ static cp_status create(const cp_control_context *context, void **state, cp_erro
 static void destroy(void *state)
 {
     failed_to_see *self = state;
-    for (size_t k = 0; k < self->numbers; k++)
-        free(self->spots[k].foes);
-    free(self->spots);
+    free(self->is_known);
     free(self);
 }
 
@@ -59,64 +52,26 @@ static cp_status reserve(failed_to_see *self, uint32_t vehicle, cp_error *error)
     if (vehicle < self->numbers)
         return CP_OK;
     size_t numbers = 2 * ((size_t)vehicle + 1);
-    blind_spot *spots = realloc(self->spots, numbers * sizeof *spots);
-    if (!spots)
+    bool *is_known = realloc(self->is_known, numbers * sizeof *is_known);
+    if (!is_known)
         return cp_fail_memory(error, "failed_to_see");
-    memset(&spots[self->numbers], 0, (numbers - self->numbers) * sizeof *spots);
-    self->spots = spots;
+    memset(&is_known[self->numbers], 0, (numbers - self->numbers) * sizeof *is_known);
+    self->is_known = is_known;
     self->numbers = numbers;
-    return CP_OK;
-}
-
-static cp_status add_foe(blind_spot *spot, uint32_t foe, cp_error *error)
-{
-    if (spot->count == spot->capacity) {
-        size_t capacity = spot->capacity ? 2 * spot->capacity : 8;
-        uint32_t *foes = realloc(spot->foes, capacity * sizeof *foes);
-        if (!foes)
-            return cp_fail_memory(error, "failed_to_see");
-        spot->foes = foes;
-        spot->capacity = capacity;
-    }
-    spot->foes[spot->count++] = foe;
     return CP_OK;
 }
 
 // One draw: does ego overlook foe?
 static cp_status draw_pair(failed_to_see *self, const cp_control_context *context, uint32_t ego,
-                           uint32_t foe, bool *overlooks, cp_error *error)
+                           uint32_t foe, cp_error *error)
 {
     cp_rng_key key = cp_rng_key_text(context->seed_key, cp_traffic_vehicle_id(self->traffic, ego));
     key = cp_rng_key_text(key, cp_traffic_vehicle_id(self->traffic, foe));
     self->pairs++;
-    *overlooks = cp_rng_uniform(key, 0) < context->parameter[PROBABILITY_1];
-    if (!*overlooks)
+    if (cp_rng_uniform(key, 0) >= context->parameter[PROBABILITY_1])
         return CP_OK;
     self->overlooked++;
-    return add_foe(&self->spots[ego], foe, error);
-}
-
-// Tell SUMO all foes of ego, ids separated by blanks.
-static cp_status command(const failed_to_see *self, uint32_t ego, cp_error *error)
-{
-    const blind_spot *spot = &self->spots[ego];
-    size_t size = 1;
-    for (size_t k = 0; k < spot->count; k++)
-        size += strlen(cp_traffic_vehicle_id(self->traffic, spot->foes[k])) + 1;
-    char *text = malloc(size);
-    if (!text)
-        return cp_fail_memory(error, "failed_to_see");
-    char *end = text;
-    for (size_t k = 0; k < spot->count; k++) {
-        if (k > 0)
-            *end++ = ' ';
-        end = stpcpy(end, cp_traffic_vehicle_id(self->traffic, spot->foes[k]));
-    }
-    *end = '\0';
-    cp_status status = cp_traffic_commands(self->traffic)
-                           ->set_parameter(ego, "junctionModel.ignoreIDs", text, error);
-    free(text);
-    return status;
+    return cp_ignored_foes_add(self->ignored, ego, foe, CP_IGNORE_UNSEEN, error);
 }
 
 // A vehicle has come: draw it against everybody known, both ways.
@@ -125,23 +80,18 @@ static cp_status meet(failed_to_see *self, const cp_control_context *context, ui
 {
     size_t count;
     const cp_vehicle_motion *motions = cp_traffic_motions(self->traffic, &count);
-    bool overlooks_any = false;
     for (size_t k = 0; k < count; k++) {
         uint32_t other = motions[k].after.vehicle;
-        if (other >= self->numbers || !self->spots[other].is_known)
+        if (other >= self->numbers || !self->is_known[other])
             continue;
-        bool overlooks, is_overlooked;
-        cp_status status = draw_pair(self, context, comer, other, &overlooks, error);
+        cp_status status = draw_pair(self, context, comer, other, error);
         if (status == CP_OK)
-            status = draw_pair(self, context, other, comer, &is_overlooked, error);
-        if (status == CP_OK && is_overlooked)
-            status = command(self, other, error);
+            status = draw_pair(self, context, other, comer, error);
         if (status != CP_OK)
             return status;
-        overlooks_any |= overlooks;
     }
-    self->spots[comer].is_known = true;
-    return overlooks_any ? command(self, comer, error) : CP_OK;
+    self->is_known[comer] = true;
+    return CP_OK;
 }
 
 static cp_status step(void *state, const cp_control_context *context, cp_error *error)
@@ -163,22 +113,30 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
     return CP_OK;
 }
 
+/* Whether one of those a driver overlooks is near him. */
+typedef struct nearby {
+    const cp_traffic *traffic;
+    const cp_vehicle_motion *own;
+    bool is_near;
+} nearby;
+
+static void look_at(void *context, uint32_t foe_vehicle)
+{
+    const double near_m = 15.0; // front to front: a car's length and two steps
+    nearby *found = context;
+    const cp_vehicle_motion *foe = cp_traffic_motion_of(found->traffic, foe_vehicle);
+    found->is_near |= foe && hypot(foe->after.front_x_m - found->own->after.front_x_m,
+                                   foe->after.front_y_m - found->own->after.front_y_m) < near_m;
+}
+
 // At fault now: somebody overlooked is right before or beside the car.
 static bool is_at_fault(const void *state, uint32_t vehicle)
 {
     const failed_to_see *self = state;
-    const double near_m = 15.0; // front to front: a car's length and two steps
-    const cp_vehicle_motion *own = cp_traffic_motion_of(self->traffic, vehicle);
-    if (!own || vehicle >= self->numbers)
-        return false;
-    const blind_spot *spot = &self->spots[vehicle];
-    for (size_t k = 0; k < spot->count; k++) {
-        const cp_vehicle_motion *foe = cp_traffic_motion_of(self->traffic, spot->foes[k]);
-        if (foe && hypot(foe->after.front_x_m - own->after.front_x_m,
-                         foe->after.front_y_m - own->after.front_y_m) < near_m)
-            return true;
-    }
-    return false;
+    nearby found = {self->traffic, cp_traffic_motion_of(self->traffic, vehicle), false};
+    if (found.own)
+        cp_ignored_foes_visit(self->ignored, vehicle, CP_IGNORE_UNSEEN, look_at, &found);
+    return found.is_near;
 }
 
 static size_t counters(const void *state, const char **names, double *values, size_t room)

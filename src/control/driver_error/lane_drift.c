@@ -237,7 +237,9 @@ static cp_status steer_back(lane_drift *self, const cp_control_context *context,
     cp_lateral_overlay now = cp_lateral_overlay_get(overlays, own->vehicle);
     if (own->phase == DRIFTING) {
         own->phase = RETURNING;
-        own->return_left_m = fmax(speed_m_s, 1.0) * context->parameter[RETURN_S];
+        // A slow car needs its way too: some 11 degrees off the lane at most.
+        own->return_left_m =
+            fmax(speed_m_s * context->parameter[RETURN_S], 8.0 * fabs(now.offset_m) + 1.0);
     }
     if (own->return_left_m <= 0.0) {
         cp_lateral_overlay_end(overlays, own->vehicle);

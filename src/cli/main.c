@@ -14,6 +14,7 @@ typedef struct command {
 
 static const command COMMAND[] = {
     {"run", cmd_run, "simulate a study: traffic, crashes, pulses, into a database"},
+    {"background", cmd_background, "what contacts a network makes without driver errors"},
     {"compare", cmd_compare, "compare the variants of a study"},
     {"report", cmd_report, "write the comparison as one HTML file with figures"},
     {"plot", cmd_plot, "draw one figure for a paper, as SVG or PDF"},
@@ -32,7 +33,7 @@ static void print_help(FILE *file)
           "their pulses and OLC, and to a comparison of driver assistance variants.\n\n",
           file);
     for (size_t k = 0; k < COMMAND_COUNT; k++)
-        fprintf(file, "  %-9s %s\n", COMMAND[k].name, COMMAND[k].what);
+        fprintf(file, "  %-10s %s\n", COMMAND[k].name, COMMAND[k].what);
     fputs("\n"
           "A study from beginning to end:\n"
           "  crashpulse run study.yaml --db study.db\n"

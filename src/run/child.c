@@ -8,12 +8,14 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #define TAIL_BYTES 1500 /* of stderr kept as the reason of a failure */
 #define LOG_PREFIX "crashpulse: "
+#define WORKER_NAME "crashpulse-worker"
 
 extern char **environ;
 
@@ -68,6 +70,24 @@ static int spawn(const char *program, const char *const *arguments, cp_child *ch
     }
     posix_spawn_file_actions_destroy(&actions);
     return failed;
+}
+
+cp_status cp_child_find_worker(const char *given, char *path, size_t size, cp_error *error)
+{
+    if (given != NULL) {
+        snprintf(path, size, "%s", given);
+    } else {
+        ssize_t length = readlink("/proc/self/exe", path, size - 1);
+        if (length < 0)
+            return cp_fail(error, CP_IO_FAILED, "/proc/self/exe: %s", strerror(errno));
+        path[length] = '\0';
+        char *name = strrchr(path, '/') + 1;
+        snprintf(name, size - (size_t)(name - path), "%s", WORKER_NAME);
+    }
+    if (access(path, X_OK) != 0)
+        return cp_fail(error, CP_IO_FAILED, "%s: %s; it belongs beside crashpulse", path,
+                       strerror(errno));
+    return CP_OK;
 }
 
 cp_status cp_child_start(const char *program, const char *const *arguments, cp_child *child,

@@ -29,6 +29,11 @@ typedef struct cp_child_end {
                                           last lines of its stderr */
 } cp_child_end;
 
+/* Path of the worker: the one given, else crashpulse-worker beside the running executable. Errors:
+ * CP_IO_FAILED when it is not there. */
+CP_MUST_CHECK cp_status cp_child_find_worker(const char *given, char *path, size_t size,
+                                             cp_error *error);
+
 /* Start program with arguments (arguments[0] is the name, NULL ends the list). */
 CP_MUST_CHECK cp_status cp_child_start(const char *program, const char *const *arguments,
                                        cp_child *child, cp_error *error);

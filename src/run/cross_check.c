@@ -37,14 +37,17 @@ cp_status cp_cross_check_add_contact(cp_cross_check *check, uint32_t vehicle_1, 
 }
 
 cp_status cp_cross_check_add_report(cp_cross_check *check, uint32_t collider, uint32_t victim,
-                                    const char *type, double time_s, cp_error *error)
+                                    const char *type, double time_s, double gap_m, cp_error *error)
 {
     // Repetitions follow soon: look from the end.
     cp_cross_check_pair pair = make_pair(collider, victim);
     for (size_t k = check->sumo_count; k > 0; k--)
-        if (check->sumo[k - 1].low == pair.low && check->sumo[k - 1].high == pair.high)
+        if (check->sumo[k - 1].low == pair.low && check->sumo[k - 1].high == pair.high) {
+            check->sumo[k - 1].gap_m = fmin(check->sumo[k - 1].gap_m, gap_m);
             return CP_OK;
+        }
     pair.time_s = time_s;
+    pair.gap_m = gap_m;
     pair.collider = collider;
     pair.victim = victim;
     pair.type = strdup(type);

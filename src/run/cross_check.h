@@ -18,6 +18,8 @@ typedef struct cp_cross_check_pair {
     const char *found_as;      /* ours: what became of the contact; SUMO's: NULL until matched */
     uint32_t collider, victim; /* SUMO's only: as first reported */
     char *type;
+    double
+        gap_m; /* SUMO's only: smallest separation of our rectangles at its reports; < 0 overlap */
 } cp_cross_check_pair;
 
 /* Zero-initialise, add, match once, destroy. */
@@ -32,10 +34,11 @@ typedef struct cp_cross_check {
 CP_MUST_CHECK cp_status cp_cross_check_add_contact(cp_cross_check *check, uint32_t vehicle_1,
                                                    uint32_t vehicle_2, const char *found_as,
                                                    double time_s, cp_error *error);
-/* One report of SUMO; repetitions are fine. */
+/* One report of SUMO; repetitions are fine. gap_m: separation of the two rectangles at that moment,
+ * INFINITY when one of them is not on the road. */
 CP_MUST_CHECK cp_status cp_cross_check_add_report(cp_cross_check *check, uint32_t collider,
                                                   uint32_t victim, const char *type, double time_s,
-                                                  cp_error *error);
+                                                  double gap_m, cp_error *error);
 /* Set found_as of all of SUMO's pairs: our contact of the same pair (the crash if there is one,
  * else the contact nearest in time), else "no_contact". */
 void cp_cross_check_match(cp_cross_check *check);

@@ -133,6 +133,7 @@ static cp_status record_cross_check(replication_run *run, const cp_replication_r
         row->victim = strdup(sumo_bridge_vehicle_id(pair->victim));
         row->type = strdup(pair->type);
         row->found_as = pair->found_as;
+        row->gap_m = isfinite(pair->gap_m) ? pair->gap_m : NAN;
         if (row->collider == NULL || row->victim == NULL || row->type == NULL)
             return cp_fail_memory(error, "collision of SUMO");
         if (strcmp(pair->found_as, CP_FOUND_CRASH) != 0)

@@ -21,7 +21,6 @@
 #include <unistd.h>
 
 #define PATH_SIZE 4096
-#define WORKER_NAME "crashpulse-worker"
 
 // A worker and what it works on.
 typedef struct runner_job {
@@ -55,21 +54,10 @@ typedef struct runner {
 
 static cp_status find_worker(runner *run, cp_error *error)
 {
-    if (run->options->worker_path != NULL) {
-        snprintf(run->worker_path, PATH_SIZE, "%s", run->options->worker_path);
-    } else {
-        // Beside the running executable.
-        ssize_t length = readlink("/proc/self/exe", run->worker_path, PATH_SIZE - 1);
-        if (length < 0)
-            return cp_fail(error, CP_IO_FAILED, "/proc/self/exe: %s", strerror(errno));
-        run->worker_path[length] = '\0';
-        char *name = strrchr(run->worker_path, '/') + 1;
-        size_t room = PATH_SIZE - (size_t)(name - run->worker_path);
-        snprintf(name, room, "%s", WORKER_NAME);
-    }
-    if (access(run->worker_path, X_OK) != 0)
-        return cp_fail(error, CP_IO_FAILED, "%s: %s; it belongs beside crashpulse",
-                       run->worker_path, strerror(errno));
+    cp_status status =
+        cp_child_find_worker(run->options->worker_path, run->worker_path, PATH_SIZE, error);
+    if (status != CP_OK)
+        return status;
     snprintf(run->parent, sizeof run->parent, "%ld", (long)getpid());
     return cp_owner_self(&run->self, error);
 }
@@ -88,9 +76,14 @@ static cp_status load_inputs(runner *run, cp_error *error)
 // Let a worker start one scenario: only it can load SUMO.
 static cp_status probe_scenario(runner *run, const cp_study_scenario *scenario, cp_error *error)
 {
-    const char *arguments[] = {
-        WORKER_NAME, "--study", run->options->study_path, "--probe", scenario->name, "--parent",
-        run->parent, NULL};
+    const char *arguments[] = {"crashpulse-worker",
+                               "--study",
+                               run->options->study_path,
+                               "--probe",
+                               scenario->name,
+                               "--parent",
+                               run->parent,
+                               NULL};
     cp_child child;
     cp_child_end end;
     int wait_status = 0;
@@ -185,7 +178,7 @@ static cp_status start_job(runner *run, runner_job *job, cp_error *error)
     char id[32];
     job->replication_id = run->waiting[run->next];
     snprintf(id, sizeof id, "%" PRId64, job->replication_id);
-    const char *arguments[] = {WORKER_NAME,
+    const char *arguments[] = {"crashpulse-worker",
                                "--study",
                                run->options->study_path,
                                "--db",

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/simulation.h"
 
+#include "impact/footprint.h"
 #include <stdlib.h>
 
 const char CP_FOUND_CRASH[] = "crash";
@@ -145,6 +146,18 @@ static cp_status take_impacts(cp_simulation *simulation, cp_error *error)
     return status;
 }
 
+// How far apart the rectangles are of two that SUMO reports.
+static double gap_of(const cp_traffic *traffic, const cp_sumo_collision *collision)
+{
+    const cp_vehicle_motion *one = cp_traffic_motion_of(traffic, collision->collider);
+    const cp_vehicle_motion *other = cp_traffic_motion_of(traffic, collision->victim);
+    if (one == NULL || other == NULL)
+        return INFINITY;
+    cp_rectangle rectangle[2] = {cp_footprint_of_state(&one->after),
+                                 cp_footprint_of_state(&other->after)};
+    return cp_rectangle_separation(&rectangle[0], &rectangle[1]);
+}
+
 static cp_status take_sumo_collisions(cp_simulation *simulation, cp_error *error)
 {
     const cp_sumo_collision *collisions = NULL;
@@ -153,7 +166,8 @@ static cp_status take_sumo_collisions(cp_simulation *simulation, cp_error *error
     for (size_t k = 0; status == CP_OK && k < count; k++)
         status = cp_cross_check_add_report(&simulation->check, collisions[k].collider,
                                            collisions[k].victim, collisions[k].type,
-                                           cp_traffic_time_s(simulation->traffic), error);
+                                           cp_traffic_time_s(simulation->traffic),
+                                           gap_of(simulation->traffic, &collisions[k]), error);
     return status;
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/progress.h"
 #include "crash/crash_simulation.h"
+#include "run/background.h"
 #include "run/fleet.h"
 #include "run/owner.h"
 #include "run/replication.h"
@@ -101,6 +102,34 @@ cp_status cp_worker_probe(const char *study_path, const char *scenario, cp_error
     status = found != NULL
                  ? cp_replication_probe(&study, found, error)
                  : cp_fail(error, CP_BAD_INPUT, "%s: has no scenario '%s'", study_path, scenario);
+    cp_study_destroy(&study);
+    return status;
+}
+
+cp_status cp_worker_background(const char *path, const char *scenario, uint64_t seed,
+                               double step_length_s, double duration_s, const char *result_path,
+                               cp_error *error)
+{
+    cp_study study = {0};
+    cp_study_scenario bare = {.sumocfg_path = (char *)path};
+    cp_background_options options = {.network = path,
+                                     .scenario = &bare,
+                                     .seed = seed,
+                                     .step_length_s = step_length_s,
+                                     .duration_s = duration_s};
+    cp_status status = CP_OK;
+    if (scenario != NULL) {
+        status = cp_study_load(path, &study, error);
+        if (status != CP_OK)
+            return status;
+        options.network = scenario;
+        options.scenario = cp_study_find_scenario(&study, scenario);
+        options.step_length_s = study.step_length_s;
+        if (options.scenario == NULL)
+            status = cp_fail(error, CP_BAD_INPUT, "%s: has no scenario '%s'", path, scenario);
+    }
+    if (status == CP_OK)
+        status = cp_background_run(&options, result_path, error);
     cp_study_destroy(&study);
     return status;
 }

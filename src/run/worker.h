@@ -23,4 +23,10 @@ CP_MUST_CHECK cp_status cp_worker_run(const char *study_path, const char *db_pat
 CP_MUST_CHECK cp_status cp_worker_probe(const char *study_path, const char *scenario,
                                         cp_error *error);
 
+/* The background of a network (run/background.h): of a .sumocfg, or of a scenario of a study (its
+ * configuration, options and step length; scenario NULL: the .sumocfg itself). Result as JSON. */
+CP_MUST_CHECK cp_status cp_worker_background(const char *path, const char *scenario, uint64_t seed,
+                                             double step_length_s, double duration_s,
+                                             const char *result_path, cp_error *error);
+
 #endif

@@ -17,6 +17,12 @@ typedef struct worker_arguments {
     const char *replication;
     const char *probe;
     const char *parent;
+    const char *background; /* where its result goes */
+    const char *sumocfg;
+    const char *scenario;
+    const char *seed;
+    const char *step_length;
+    const char *duration;
 } worker_arguments;
 
 static const struct argp_option OPTIONS[] = {
@@ -25,6 +31,12 @@ static const struct argp_option OPTIONS[] = {
     {"replication", 'r', "ID", 0, "Row id of the replication to run", 0},
     {"probe", 'p', "SCENARIO", 0, "Only see whether this scenario starts", 0},
     {"parent", 'P', "PID", 0, "Process that must be alive for this one to go on", 0},
+    {"background", 'b', "RESULT", 0, "Run without driver errors, result into this file", 0},
+    {"sumocfg", 'c', "FILE", 0, "of this configuration", 0},
+    {"scenario", 'n', "NAME", 0, "or of this scenario of the study", 0},
+    {"seed", 'S', "N", 0, "with this seed", 0},
+    {"step-length", 'l', "S", 0, "and this step length", 0},
+    {"duration", 't', "S", 0, "for this long", 0},
     {0}};
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
@@ -46,7 +58,35 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case 'P':
         arguments->parent = argument;
         return 0;
+    case 'b':
+        arguments->background = argument;
+        return 0;
+    case 'c':
+        arguments->sumocfg = argument;
+        return 0;
+    case 'n':
+        arguments->scenario = argument;
+        return 0;
+    case 'S':
+        arguments->seed = argument;
+        return 0;
+    case 'l':
+        arguments->step_length = argument;
+        return 0;
+    case 't':
+        arguments->duration = argument;
+        return 0;
     case ARGP_KEY_END:
+        if (arguments->background != NULL) {
+            if ((arguments->sumocfg == NULL) == (arguments->study == NULL) ||
+                (arguments->study == NULL) != (arguments->scenario == NULL) ||
+                arguments->seed == NULL || arguments->step_length == NULL ||
+                arguments->duration == NULL)
+                argp_error(state,
+                           "--background needs --sumocfg, or --study and --scenario; --seed, "
+                           "--step-length and --duration");
+            return 0;
+        }
         if (arguments->study == NULL ||
             (arguments->probe == NULL) == (arguments->replication == NULL || arguments->db == NULL))
             argp_error(state, "needs --study and either --probe or --db and --replication");
@@ -73,6 +113,23 @@ static int follow_parent(const char *parent)
     return prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && getppid() == (pid_t)strtol(parent, NULL, 10);
 }
 
+static cp_status run_background(const worker_arguments *arguments, cp_error *error)
+{
+    return cp_worker_background(arguments->sumocfg != NULL ? arguments->sumocfg : arguments->study,
+                                arguments->scenario, strtoull(arguments->seed, NULL, 10),
+                                strtod(arguments->step_length, NULL),
+                                strtod(arguments->duration, NULL), arguments->background, error);
+}
+
+static int finish(cp_status status, int elsewhere, const cp_error *error)
+{
+    if (status != CP_OK) {
+        tell_error(error);
+        return cp_status_exit_code(status);
+    }
+    return elsewhere ? CP_WORKER_EXIT_ELSEWHERE : 0;
+}
+
 int main(int argc, char **argv)
 {
     static const struct argp ARGP = {
@@ -87,14 +144,12 @@ int main(int argc, char **argv)
         return 2;
     if (!follow_parent(arguments.parent))
         return 1;
+    if (arguments.background != NULL)
+        return finish(run_background(&arguments, &error), 0, &error);
     cp_status status =
         arguments.probe != NULL
             ? cp_worker_probe(arguments.study, arguments.probe, &error)
             : cp_worker_run(arguments.study, arguments.db, strtoll(arguments.replication, NULL, 10),
                             &elsewhere, &error);
-    if (status != CP_OK) {
-        tell_error(&error);
-        return cp_status_exit_code(status);
-    }
-    return elsewhere ? CP_WORKER_EXIT_ELSEWHERE : 0;
+    return finish(status, elsewhere, &error);
 }

@@ -264,7 +264,9 @@ static cp_status write_sumo_collisions(cp_store *store, const cp_result_rows *ro
     cp_statement s;
     cp_status status = cp_statement_prepare(
         store, "writing a collision of SUMO",
-        "INSERT INTO sumo_collision VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)", &s, error);
+        "INSERT INTO sumo_collision (replication_id, number, time_s, collider, victim, sumo_type, "
+        "found_as, gap_m) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+        &s, error);
     for (size_t k = 0; status == CP_OK && k < rows->sumo_collision_count; k++) {
         const cp_sumo_collision_row *collision = &rows->sumo_collision[k];
         cp_bind_integer(&s, 1, rows->replication_id);
@@ -274,6 +276,7 @@ static cp_status write_sumo_collisions(cp_store *store, const cp_result_rows *ro
         cp_bind_text(&s, 5, collision->victim);
         cp_bind_text(&s, 6, collision->type);
         cp_bind_text(&s, 7, collision->found_as);
+        cp_bind_real(&s, 8, collision->gap_m);
         status = cp_statement_run(&s, error);
     }
     cp_statement_finish(&s);

@@ -56,6 +56,7 @@ typedef struct cp_sumo_collision_row {
     char *victim;
     char *type;
     const char *found_as; /* static text */
+    double gap_m;         /* between our rectangles; < 0 overlap; NAN unknown */
 } cp_sumo_collision_row;
 
 struct cp_counterfactual_rows;

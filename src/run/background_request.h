@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RUN_BACKGROUND_REQUEST_H
+#define RUN_BACKGROUND_REQUEST_H
+
+#include "core/error.h"
+
+#include <stdint.h>
+
+/* Have a worker process find the background of a network (run/background.h). */
+
+typedef struct cp_background_request {
+    const char *path;     /* a .sumocfg, or a study file with the scenario */
+    const char *scenario; /* NULL: path is a .sumocfg */
+    uint64_t seed;
+    double step_length_s; /* of a scenario the study's counts */
+    double duration_s;
+    const char *worker_path; /* NULL: beside the running executable */
+} cp_background_request;
+
+/* Its result as JSON text; the caller frees. Errors: those of the worker, with its exit code as
+ * CP_BAD_INPUT (2) or CP_RUN_FAILED; CP_IO_FAILED. */
+CP_MUST_CHECK cp_status cp_background_request_run(const cp_background_request *request, char **json,
+                                                  cp_error *error);
+
+#endif

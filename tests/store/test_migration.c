@@ -62,8 +62,10 @@ static char *rows_of_version_1(const char *db)
             "number, seed, status, configuration_hash, vehicle_km, counters FROM replication ORDER "
             "BY id; SELECT id, time_s, closing_speed_m_s, shift_m FROM crash ORDER BY id; SELECT "
             "crash_id, role, sumo_id, yaw_rad, olc_g, delta_v_m_s, end_s FROM crash_vehicle ORDER "
-            "BY 1, 2; SELECT * FROM pulse ORDER BY 1, 2; SELECT * FROM contact; SELECT * FROM "
-            "sumo_collision; SELECT replication_id, number, host, pid, outcome FROM attempt; "
+            "BY 1, 2; SELECT * FROM pulse ORDER BY 1, 2; SELECT * FROM contact; SELECT "
+            "replication_id, number, time_s, "
+            "collider, victim, sumo_type, found_as FROM sumo_collision; SELECT replication_id, "
+            "number, host, pid, outcome FROM attempt; "
             "SELECT name, hash, yaml FROM vehicle_model");
 }
 

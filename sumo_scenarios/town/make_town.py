@@ -27,10 +27,11 @@ for x in range(SIZE):
         nodes.append(f'    <node id="n{x}_{y}" x="{x * BLOCK_M}" y="{y * BLOCK_M}" type="{kind}"/>')
 
 
-def road(a, b, lanes, speed, priority):
+def road(a, b, lanes, speed, priority, may_overtake=False):
     for one, other in ((a, b), (b, a)):
+        neighbour = f'<lane index="0"><neigh lane="{other}to{one}_0"/></lane>' if may_overtake else ""
         edges.append(f'    <edge id="{one}to{other}" from="{one}" to="{other}" numLanes="{lanes}" '
-                     f'speed="{speed}" priority="{priority}"/>')
+                     f'speed="{speed}" priority="{priority}">{neighbour}</edge>')
 
 
 for x in range(SIZE):
@@ -50,7 +51,7 @@ rural = {"west": (f"n0_{middle}", -RURAL_M, middle * BLOCK_M),
          "north": (f"n{middle}_{last}", middle * BLOCK_M, far + RURAL_M)}
 for name, (gate, x, y) in rural.items():
     nodes.append(f'    <node id="{name}" x="{x}" y="{y}" type="dead_end"/>')
-    road(name, gate, 1, 22.22, 3)
+    road(name, gate, 1, 22.22, 3, may_overtake=True)
 
 # Demand: rural roads to each other and into town, and between opposite and neighbouring rims of the
 # town. Periods are primes in tenths of a second, so that every meeting differs.

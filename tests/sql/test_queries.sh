@@ -36,6 +36,8 @@ one() {
 expect "crashes of exposure_and_rates" "$(sum 6 exposure_and_rates)" "$(one 'SELECT count(*) FROM crash')"
 expect "crashes of configuration_map" "$(sum 5 configuration_map)" \
     "$(one "SELECT count(*) FROM crash WHERE crash_type LIKE 'front-%'")"
+expect "crashes of crash_configurations" "$(sum 4 crash_configurations)" \
+    "$(one 'SELECT count(*) FROM crash')"
 expect "vehicles of validity" "$(sum 4 validity)" \
     "$(one 'SELECT count(*) FROM crash_vehicle WHERE frontal = 1')"
 expect "treatment crashes of paired_replications" "$(sum 6 paired_replications)" \

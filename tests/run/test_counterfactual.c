@@ -210,13 +210,11 @@ static void null_treatment_reproduces_and_outcomes_add_up(void **state)
                           "outcome = 'unchanged' AND outcome_olc IN ('unchanged', 'no_olc') AND "
                           "treated_closing_speed_m_s = baseline_closing_speed_m_s AND "
                           "treated_time_s = baseline_time_s AND new_crashes = 0") == 2 * valid);
-    // Braking helps more often than it harms.
+    // Braking helps in most pairs.
     double better = number_of(f, "pairs",
                               "SELECT count(*) FROM counterfactual_pair WHERE variant = 'aeb' AND "
                               "outcome IN ('avoided', 'mitigated')");
-    assert_true(better > number_of(f, "pairs",
-                                   "SELECT count(*) FROM counterfactual_pair WHERE variant = "
-                                   "'aeb' AND outcome = 'aggravated'"));
+    assert_true(better > 0.5 * valid);
     // Invalid under one treatment, invalid under all, for the same reason.
     assert_true(number_of(f, "pairs",
                           "SELECT count(*) FROM counterfactual AS c JOIN null_treatment AS n USING "

@@ -4,14 +4,34 @@
 #include "core/log.h"
 #include "run/runner.h"
 
+#include <stdlib.h>
 #include <unistd.h>
+
+enum { TIME_LIMIT = 256, SHARD };
 
 static const struct argp_option OPTIONS[] = {
     {"db", 'd', "FILE", 0,
      "database of the study; created, or completed where an earlier run ended", 0},
     {"jobs", 'j', "N", 0, "worker processes at a time (default: one a processor)", 0},
+    {"time-limit", TIME_LIMIT, "SECONDS", 0,
+     "a replication that takes longer has failed (default: ten times the simulated duration, at "
+     "least 600)",
+     0},
+    {"shard", SHARD, "I/N", 0,
+     "run only share I of N, into a database of its own; 'crashpulse merge' puts them together", 0},
     {0},
 };
+
+static void parse_shard(const char *text, cp_runner_options *options, struct argp_state *state)
+{
+    char *rest = NULL;
+    options->shard = strtoul(text, &rest, 10);
+    if (*rest == '/' && rest[1] >= '0' && rest[1] <= '9')
+        options->shards = strtoul(rest + 1, &rest, 10);
+    if (text[0] < '0' || text[0] > '9' || *rest != '\0' || options->shard < 1 ||
+        options->shard > options->shards)
+        argp_error(state, "--shard must be I/N with I from 1 to N, found '%s'", text);
+}
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
@@ -22,6 +42,12 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case 'j':
         options->jobs = (size_t)cp_args_integer(state, "--jobs", argument, 1, 1024);
+        return 0;
+    case TIME_LIMIT:
+        options->time_limit_s = cp_args_number(state, "--time-limit", argument, 1, 1e7, "s");
+        return 0;
+    case SHARD:
+        parse_shard(argument, options, state);
         return 0;
     case ARGP_KEY_ARG:
         if (options->study_path)

@@ -15,6 +15,9 @@ typedef struct command {
 static const command COMMAND[] = {
     {"run", cmd_run, "simulate a study: traffic, crashes, pulses, into a database"},
     {"background", cmd_background, "what contacts a network makes without driver errors"},
+    {"status", cmd_status, "how far a study has come"},
+    {"merge", cmd_merge, "put databases of one study together"},
+    {"submit", cmd_submit, "run a study on a cluster"},
     {"compare", cmd_compare, "compare the variants of a study"},
     {"report", cmd_report, "write the comparison as one HTML file with figures"},
     {"plot", cmd_plot, "draw one figure for a paper, as SVG or PDF"},

@@ -20,6 +20,10 @@ const double CP_PULSE_RESOLUTION[CP_CHANNEL_COUNT] = {
     [CP_CHANNEL_VY] = 0.001,   [CP_CHANNEL_X] = 0.0001,       [CP_CHANNEL_Y] = 0.0001,
     [CP_CHANNEL_YAW] = 0.0001, [CP_CHANNEL_YAW_RATE] = 0.001, [CP_CHANNEL_YAW_ACC] = 1.0};
 
+// db/pulse.zdict, embedded: what the differences of most pulses look like.
+extern const unsigned char cp_pulse_dictionary[];
+extern const size_t cp_pulse_dictionary_size;
+
 // Signed differences as unsigned numbers, small ones small: 0, -1, 1, -2, ... and back.
 static uint64_t fold(int64_t value)
 {
@@ -128,6 +132,7 @@ cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size, cp_e
     int64_t *steps[CP_CHANNEL_COUNT] = {NULL};
     unsigned char *bytes = NULL;
     unsigned char *packed = NULL;
+    ZSTD_CCtx *context = NULL;
     cp_status status = check_size((int64_t)count, pulse->sample_interval_s, error);
     if (status == CP_OK)
         status = allocate_steps(count, steps, error);
@@ -148,8 +153,15 @@ cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size, cp_e
         status = cp_fail_memory(error, "pulse");
         goto done;
     }
+    context = ZSTD_createCCtx();
+    if (context == NULL) {
+        status = cp_fail_memory(error, "pulse");
+        goto done;
+    }
     size_t header = write_header(count, pulse->sample_interval_s, packed);
-    size_t result = ZSTD_compress(packed + header, room, bytes, used, ZSTD_LEVEL);
+    size_t result =
+        ZSTD_compress_usingDict(context, packed + header, room, bytes, used, cp_pulse_dictionary,
+                                cp_pulse_dictionary_size, ZSTD_LEVEL);
     if (ZSTD_isError(result)) {
         status = cp_fail(error, CP_STORE_FAILED, "pulse: zstd: %s", ZSTD_getErrorName(result));
         goto done;
@@ -158,6 +170,7 @@ cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size, cp_e
     *size = header + result;
     packed = NULL;
 done:
+    ZSTD_freeCCtx(context);
     free(packed);
     free(bytes);
     free(steps[0]);
@@ -196,17 +209,23 @@ static cp_status read_differences(int codec, const unsigned char *bytes, size_t 
 }
 
 // Decompress into memory no larger than an encoder of so many samples could have needed.
-static cp_status decompress(const void *blob, size_t size, size_t count, unsigned char **bytes,
-                            size_t *used, cp_error *error)
+static cp_status decompress(int codec, const void *blob, size_t size, size_t count,
+                            unsigned char **bytes, size_t *used, cp_error *error)
 {
     size_t room = count * CP_CHANNEL_COUNT * VARINT_BYTES_MAX;
     unsigned long long content = ZSTD_getFrameContentSize(blob, size);
     if (content == ZSTD_CONTENTSIZE_ERROR || content == ZSTD_CONTENTSIZE_UNKNOWN || content > room)
         return fail_damaged(error, "not a zstd frame of the right size");
     *bytes = malloc((size_t)content + 1);
-    if (*bytes == NULL)
+    ZSTD_DCtx *context = ZSTD_createDCtx();
+    if (*bytes == NULL || context == NULL) {
+        ZSTD_freeDCtx(context);
         return cp_fail_memory(error, "pulse");
-    *used = ZSTD_decompress(*bytes, (size_t)content, blob, size);
+    }
+    *used = ZSTD_decompress_usingDict(context, *bytes, (size_t)content, blob, size,
+                                      codec == 1 ? NULL : cp_pulse_dictionary,
+                                      codec == 1 ? 0 : cp_pulse_dictionary_size);
+    ZSTD_freeDCtx(context);
     return ZSTD_isError(*used) ? fail_damaged(error, ZSTD_getErrorName(*used)) : CP_OK;
 }
 
@@ -240,7 +259,7 @@ static cp_status decode_frame(int codec, const unsigned char *frame, size_t size
     size_t used = 0;
     cp_status status = allocate_steps(count, steps, error);
     if (status == CP_OK)
-        status = decompress(frame, size, count, &bytes, &used, error);
+        status = decompress(codec, frame, size, count, &bytes, &used, error);
     if (status == CP_OK)
         status = read_differences(codec, bytes, used, steps, count, interval_s, error);
     if (status == CP_OK)

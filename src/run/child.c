@@ -185,11 +185,18 @@ void cp_child_collect(cp_child *child, int wait_status, cp_child_end *end)
     *child = (cp_child){0};
 }
 
-void cp_child_kill(cp_child *child, cp_child_end *end)
+void cp_child_kill(cp_child *child, const char *why, cp_child_end *end)
 {
     int wait_status = 0;
-    kill(child->pid, SIGKILL);
+    // It may have ended by itself just now: then it is not killed, and its own end counts. Its
+    // group goes with it, forked branches of the simulation included.
+    kill(-child->pid, SIGKILL);
     while (waitpid(child->pid, &wait_status, 0) < 0 && errno == EINTR)
         continue;
     cp_child_collect(child, wait_status, end);
+    if (why == NULL || end->exit_code >= 0)
+        return;
+    char reason[CP_CHILD_REASON_SIZE];
+    snprintf(reason, sizeof reason, "%.200s: %.3500s", why, end->reason);
+    snprintf(end->reason, sizeof end->reason, "%s", reason);
 }

@@ -42,7 +42,8 @@ CP_MUST_CHECK cp_status cp_child_start(const char *program, const char *const *a
  * Its log lines ("crashpulse: ...") are passed on to our stderr. */
 void cp_child_collect(cp_child *child, int wait_status, cp_child_end *end);
 
-/* Kill it and wait for its end. */
-void cp_child_kill(cp_child *child, cp_child_end *end);
+/* Kill it and wait for its end; why (may be NULL) goes in front of its last words: "no end after 10
+ * s". */
+void cp_child_kill(cp_child *child, const char *why, cp_child_end *end);
 
 #endif

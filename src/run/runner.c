@@ -12,6 +12,8 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +23,7 @@
 #include <unistd.h>
 
 #define PATH_SIZE 4096
+#define SHORTEST_TIME_LIMIT_S 600.0
 
 // A worker and what it works on.
 typedef struct runner_job {
@@ -46,9 +49,36 @@ typedef struct runner {
     sigset_t old_mask;
     int signals; /* descriptor of SIGCHLD, SIGINT, SIGTERM; -1: not set up */
     bool interrupted;
+    double time_limit_s; /* of one replication */
     char first_failure[512];
     cp_progress progress;
 } runner;
+
+// ---- shards --------------------------------------------------------------------------------
+
+// The replications of the plan are dealt out in turn: shards are alike in scenarios and variants,
+// unless their numbers divide each other, and in number of replications always.
+static bool is_ours(const runner *run, size_t place)
+{
+    size_t shards = run->options->shards;
+    return shards == 0 || place % shards == run->options->shard - 1;
+}
+
+static bool is_ours_by_id(const runner *run, int64_t replication_id)
+{
+    const cp_replication_row *row = cp_plan_find(&run->plan, replication_id);
+    return row != NULL && is_ours(run, (size_t)(row - run->plan.replication));
+}
+
+// Of what waits, keep our share.
+static void keep_ours(runner *run)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < run->waiting_count; k++)
+        if (is_ours_by_id(run, run->waiting[k]))
+            run->waiting[kept++] = run->waiting[k];
+    run->waiting_count = kept;
+}
 
 // ---- preparation ---------------------------------------------------------------------------
 
@@ -69,7 +99,11 @@ static cp_status load_inputs(runner *run, cp_error *error)
         status = cp_fleet_load(&run->study, &run->fleet, error);
     if (status == CP_OK)
         status = cp_plan_create(&run->study, run->fleet.rows, &run->plan, error);
-    run->summary->replications = run->plan.replication_count;
+    run->time_limit_s = run->options->time_limit_s;
+    if (run->time_limit_s <= 0.0)
+        run->time_limit_s = fmax(SHORTEST_TIME_LIMIT_S, 10.0 * run->study.duration_s);
+    for (size_t k = 0; k < run->plan.replication_count; k++)
+        run->summary->replications += is_ours(run, k);
     return status;
 }
 
@@ -121,10 +155,14 @@ static cp_status prepare_store(runner *run, cp_error *error)
         status = cp_plan_rows_write(run->store, &run->plan, error);
     if (status == CP_OK)
         status = cp_claim_waiting(run->store, &run->waiting, &run->waiting_count, error);
+    if (status == CP_OK && run->options->shards > 0)
+        keep_ours(run);
     if (status == CP_OK)
         status = cp_query_number(
             run->store, "SELECT count(*) FROM replication WHERE status = 'done'", &done, error);
     run->summary->done_before = (size_t)done;
+    if (status == CP_OK && run->options->shards > 0)
+        run->summary->done_before = run->summary->replications - run->waiting_count;
     if (released > 0)
         cp_log_info("%zu replications of a run that ended early are run again", released);
     return status;
@@ -157,10 +195,25 @@ static void end_signals(runner *run)
     sigprocmask(SIG_SETMASK, &run->old_mask, NULL);
 }
 
-// Sleep until a child ends or somebody asks us to stop.
+// Until the first of the workers has to be done.
+static double seconds_left(const runner *run)
+{
+    double first_s = INFINITY;
+    for (size_t k = 0; k < run->options->jobs; k++)
+        if (run->jobs[k].child.pid != 0)
+            first_s = fmin(first_s, run->jobs[k].child.started_s + run->time_limit_s);
+    return fmax(0.0, first_s - cp_clock_s());
+}
+
+// Sleep until a child ends, one is overdue, or somebody asks us to stop.
 static cp_status wait_signal(runner *run, cp_error *error)
 {
     struct signalfd_siginfo info;
+    struct pollfd ready = {.fd = run->signals, .events = POLLIN};
+    int timeout_ms = (int)fmin(ceil(1e3 * seconds_left(run)), 3.6e6);
+    int found = poll(&ready, 1, timeout_ms);
+    if (found == 0 || (found < 0 && errno == EINTR))
+        return CP_OK;
     ssize_t length = read(run->signals, &info, sizeof info);
     if (length < 0 && errno == EINTR)
         return CP_OK;
@@ -235,19 +288,42 @@ static cp_status record_failure(runner *run, int64_t replication_id, pid_t pid,
     return status;
 }
 
+static cp_status conclude_job(runner *run, const runner_job *job, pid_t pid,
+                              const cp_child_end *end, cp_error *error)
+{
+    run->running--;
+    if (end->exit_code == 0)
+        run->summary->done_now++;
+    else if (end->exit_code == CP_WORKER_EXIT_ELSEWHERE)
+        run->summary->elsewhere++;
+    else
+        return record_failure(run, job->replication_id, pid, end, error);
+    return CP_OK;
+}
+
 static cp_status finish_job(runner *run, runner_job *job, int wait_status, cp_error *error)
 {
     cp_child_end end;
-    cp_status status = CP_OK;
     pid_t pid = job->child.pid;
     cp_child_collect(&job->child, wait_status, &end);
-    run->running--;
-    if (end.exit_code == 0)
-        run->summary->done_now++;
-    else if (end.exit_code == CP_WORKER_EXIT_ELSEWHERE)
-        run->summary->elsewhere++;
-    else
-        status = record_failure(run, job->replication_id, pid, &end, error);
+    return conclude_job(run, job, pid, &end, error);
+}
+
+// A worker that hangs is ended; its replication failed, the others go on.
+static cp_status end_overdue_jobs(runner *run, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < run->options->jobs; k++) {
+        runner_job *job = &run->jobs[k];
+        cp_child_end end;
+        char why[64];
+        pid_t pid = job->child.pid;
+        if (pid == 0 || cp_clock_s() < job->child.started_s + run->time_limit_s)
+            continue;
+        snprintf(why, sizeof why, "no end after %g s (--time-limit)", run->time_limit_s);
+        cp_child_kill(&job->child, why, &end);
+        status = conclude_job(run, job, pid, &end, error);
+    }
     return status;
 }
 
@@ -299,7 +375,7 @@ static void stop_jobs(runner *run)
         pid_t pid = job->child.pid;
         if (pid == 0)
             continue;
-        cp_child_kill(&job->child, &end);
+        cp_child_kill(&job->child, NULL, &end);
         cp_status status =
             cp_claim_end_of(run->store, job->replication_id, run->self.host, pid,
                             CP_CLAIM_INTERRUPTED, end.wall_time_s, NULL, &ended, &ignored);
@@ -328,6 +404,8 @@ static cp_status run_jobs(runner *run, cp_error *error)
         status = wait_signal(run, error);
         if (status == CP_OK)
             status = finish_ended_jobs(run, error);
+        if (status == CP_OK)
+            status = end_overdue_jobs(run, error);
     }
     stop_jobs(run);
     if (run->options->progress)

@@ -14,11 +14,15 @@ typedef struct cp_runner_options {
     const char *db_path;
     size_t jobs;             /* worker processes at a time, >= 1 */
     const char *worker_path; /* NULL: crashpulse-worker beside the running executable */
-    bool progress;           /* show progress on stderr */
+    double time_limit_s; /* a replication that takes longer has failed; 0: ten times the simulated
+                            duration, at least 600 s */
+    size_t shard;        /* 1 ... shards: which share of the replications to run; */
+    size_t shards;       /* 0: all of them */
+    bool progress;       /* show progress on stderr */
 } cp_runner_options;
 
 typedef struct cp_runner_summary {
-    size_t replications; /* planned by the study file */
+    size_t replications; /* planned by the study file, of this shard */
     size_t done_before;  /* finished by earlier runs */
     size_t done_now;
     size_t failed;    /* tried in this run without success */

@@ -2,6 +2,8 @@
 #include "run/simulation.h"
 
 #include "impact/footprint.h"
+#include "run/sumo_words.h"
+
 #include <stdlib.h>
 
 const char CP_FOUND_CRASH[] = "crash";
@@ -38,13 +40,18 @@ cp_status cp_simulation_begin(const cp_study *study, const cp_study_scenario *sc
                               const cp_study_variant *variant, uint64_t seed,
                               cp_simulation *simulation, cp_error *error)
 {
+    cp_sumo_words words;
+    *simulation = (cp_simulation){0};
+    cp_status status = cp_sumo_words_create(scenario, variant, seed, &words, error);
+    if (status != CP_OK)
+        return status;
     cp_traffic_options options = {.sumocfg = scenario->sumocfg_path,
                                   .seed = seed,
                                   .step_length_s = study->step_length_s,
-                                  .options = (const char *const *)scenario->sumo_options,
-                                  .option_count = scenario->sumo_option_count};
-    *simulation = (cp_simulation){0};
-    cp_status status = cp_traffic_create(&options, &simulation->traffic, error);
+                                  .options = (const char *const *)words.word,
+                                  .option_count = words.count};
+    status = cp_traffic_create(&options, &simulation->traffic, error);
+    cp_sumo_words_destroy(&words);
     if (status == CP_OK)
         status = create_controls(study, scenario, variant, seed, simulation->traffic,
                                  &simulation->controls, error);

@@ -5,6 +5,7 @@
 #include "store/schema.h"
 #include "store/store_sqlite.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -190,6 +191,55 @@ static cp_status check_version(cp_store *store, cp_store_mode mode, cp_error *er
     return cp_schema_migrate(store, error);
 }
 
+// On a read-only disk SQLite cannot keep its log of readers: nobody writes there, so it need not.
+static cp_status open_unchanging(cp_store *store, cp_error *error)
+{
+    struct stat log;
+    char *log_path = sqlite3_mprintf("%s-wal", store->path);
+    bool has_log = log_path != NULL && stat(log_path, &log) == 0 && log.st_size > 0;
+    sqlite3_free(log_path);
+    if (has_log)
+        return cp_fail(
+            error, CP_BAD_INPUT,
+            "%s: has an unfinished log beside it (-wal) on a read-only disk; copy both to "
+            "another disk",
+            store->path);
+
+    // A file name within an URI: its special characters as %xx.
+    char *uri = sqlite3_mprintf("file:");
+    for (const char *c = store->path; *c != '\0' && uri != NULL; c++)
+        uri = strchr("%?# ", *c) != NULL ? sqlite3_mprintf("%z%%%02x", uri, *c)
+                                         : sqlite3_mprintf("%z%c", uri, *c);
+    if (uri != NULL)
+        uri = sqlite3_mprintf("%z?immutable=1", uri);
+    if (uri == NULL)
+        return cp_fail_memory(error, store->path);
+    int result = sqlite3_open_v2(uri, &store->handle, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, NULL);
+    sqlite3_free(uri);
+    return result == SQLITE_OK
+               ? CP_OK
+               : cp_fail(error, CP_BAD_INPUT, "%s: cannot be opened: %s", store->path,
+                         store->handle != NULL ? sqlite3_errmsg(store->handle) : "out of memory");
+}
+
+static cp_status open_file(cp_store *store, cp_store_mode mode, bool exists, cp_error *error)
+{
+    if (exists && access(store->path, W_OK) != 0) {
+        if (mode != CP_STORE_READ)
+            return cp_fail(error, CP_IO_FAILED, "%s: cannot be written: %s", store->path,
+                           strerror(errno));
+        if (errno == EROFS)
+            return open_unchanging(store, error);
+    }
+    int flags = mode == CP_STORE_READ ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
+    if (mode == CP_STORE_CREATE)
+        flags |= SQLITE_OPEN_CREATE;
+    if (sqlite3_open_v2(store->path, &store->handle, flags, NULL) != SQLITE_OK)
+        return cp_fail(error, CP_BAD_INPUT, "%s: cannot be opened: %s", store->path,
+                       store->handle != NULL ? sqlite3_errmsg(store->handle) : "out of memory");
+    return CP_OK;
+}
+
 static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *error)
 {
     struct stat entry;
@@ -199,14 +249,15 @@ static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *erro
     if (!exists && mode != CP_STORE_CREATE)
         return cp_fail(error, CP_BAD_INPUT, "%s: no such database", store->path);
 
-    int flags = mode == CP_STORE_READ ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
-    if (mode == CP_STORE_CREATE)
-        flags |= SQLITE_OPEN_CREATE;
-    if (sqlite3_open_v2(store->path, &store->handle, flags, NULL) != SQLITE_OK)
-        return cp_fail(error, CP_BAD_INPUT, "%s: cannot be opened: %s", store->path,
-                       store->handle != NULL ? sqlite3_errmsg(store->handle) : "out of memory");
+    cp_status status = open_file(store, mode, exists, error);
+    if (status != CP_OK)
+        return status;
     sqlite3_busy_timeout(store->handle, BUSY_TIMEOUT_MS);
-    cp_status status = check_version(store, mode, error);
+    // For new files only: rows of some hundred bytes, packed pulses among them, fill larger pages
+    // better.
+    if (mode == CP_STORE_CREATE)
+        sqlite3_exec(store->handle, "PRAGMA page_size=8192", NULL, NULL, NULL);
+    status = check_version(store, mode, error);
     if (status == CP_OK && mode != CP_STORE_READ)
         status = cp_store_execute(store, "setting it up",
                                   "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL", error);

@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/args.h"
+#include "cli/commands.h"
+#include "run/owner.h"
+#include "store/query.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct arguments {
+    const char *db_path;
+    cp_format format;
+} arguments;
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    arguments *a = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &a->format;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (a->db_path)
+            argp_error(state, "one database at a time, found '%s' too", argument);
+        a->db_path = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!a->db_path)
+            argp_error(state, "which database? DB is missing");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+
+static const struct argp ARGP = {
+    .parser = parse,
+    .args_doc = "DB",
+    .doc = "How far a study has come: replications done, running, failed and to come of every "
+           "scenario and variant, crashes so far, time left, and why replications failed. Only "
+           "reads; a study may run meanwhile."
+           "\v"
+           "'lost' are replications whose worker is gone; the next run takes them up. The time "
+           "left is that of the replications to come, at the mean time of those done, shared by "
+           "the workers running now.\n\n"
+           "Example:\n"
+           "  crashpulse status demo.db\n",
+    .children = CHILDREN,
+};
+
+// ---- what is running -----------------------------------------------------------------------
+
+typedef struct owners {
+    size_t alive;
+    size_t lost;
+} owners;
+
+static cp_status look_at_owner(void *context, const cp_row *row, cp_error *error)
+{
+    (void)error;
+    owners *found = context;
+    cp_owner owner = {.pid = row->cell[1].integer, .process_start = row->cell[2].integer};
+    snprintf(owner.host, sizeof owner.host, "%s", row->cell[0].text);
+    *(cp_owner_is_alive(&owner) ? &found->alive : &found->lost) += 1;
+    return CP_OK;
+}
+
+static cp_status find_owners(cp_store *store, owners *found, cp_error *error)
+{
+    cp_query_handler handler = {.row = look_at_owner, .context = found};
+    return cp_query(store, "SELECT host, pid, process_start FROM attempt WHERE outcome = 'running'",
+                    NULL, 0, &handler, error);
+}
+
+// ---- the tables ----------------------------------------------------------------------------
+
+static cp_status add_progress(void *context, const cp_row *row, cp_error *error)
+{
+    (void)error;
+    cp_table *table = context;
+    for (size_t k = 0; k < row->column_count; k++) {
+        if (k < 2)
+            cp_table_text(table, row->cell[k].text);
+        else
+            cp_table_integer(table, row->cell[k].integer);
+    }
+    return CP_OK;
+}
+
+static cp_status print_progress(cp_store *store, cp_format format, cp_error *error)
+{
+    static const char *const COLUMN[] = {"scenario", "variant", "replications", "done",
+                                         "running",  "failed",  "planned",      "crashes"};
+    cp_table table = {0};
+    cp_table_begin(&table, COLUMN, 8);
+    cp_query_handler handler = {.row = add_progress, .context = &table};
+    cp_status status = cp_query(
+        store,
+        "SELECT p.scenario, p.variant, p.replications, p.done, p.running, p.failed, p.planned, "
+        "(SELECT count(*) FROM crash AS c JOIN replication AS r ON r.id = c.replication_id JOIN "
+        "scenario AS s ON s.id = r.scenario_id JOIN variant AS v ON v.id = r.variant_id WHERE "
+        "s.name = p.scenario AND v.name = p.variant) FROM progress AS p",
+        NULL, 0, &handler, error);
+    if (status == CP_OK)
+        status = cp_table_print(&table, format, stdout, error);
+    cp_table_destroy(&table);
+    return status;
+}
+
+static cp_status print_failure(void *context, const cp_row *row, cp_error *error)
+{
+    (void)error;
+    (void)context;
+    printf("  %s, %s, replication %lld: %.300s\n", row->cell[0].text, row->cell[1].text,
+           (long long)row->cell[2].integer, row->cell[3].text);
+    return CP_OK;
+}
+
+// Why replications failed: the last words of the last attempt.
+static cp_status print_failures(cp_store *store, cp_error *error)
+{
+    double failed = 0;
+    cp_status status = cp_query_number(
+        store, "SELECT count(*) FROM replication WHERE status = 'failed'", &failed, error);
+    if (status != CP_OK || failed == 0)
+        return status;
+    printf("\nfailed%s:\n", failed > 5 ? ", the first five" : "");
+    cp_query_handler handler = {.row = print_failure};
+    return cp_query(store,
+                    "SELECT s.name, v.name, r.number, (SELECT message FROM attempt AS a WHERE "
+                    "a.replication_id = r.id ORDER BY a.number DESC LIMIT 1) FROM replication AS r "
+                    "JOIN scenario AS s ON s.id = r.scenario_id JOIN variant AS v ON v.id = "
+                    "r.variant_id WHERE r.status = 'failed' ORDER BY s.number, v.number, r.number "
+                    "LIMIT 5",
+                    NULL, 0, &handler, error);
+}
+
+static cp_status print_summary(cp_store *store, cp_error *error)
+{
+    owners found = {0};
+    double all = 0, done = 0, crashes = 0, mean_s = NAN;
+    cp_status status = cp_query_number(store, "SELECT count(*) FROM replication", &all, error);
+    if (status == CP_OK)
+        status = cp_query_number(store, "SELECT count(*) FROM replication WHERE status = 'done'",
+                                 &done, error);
+    if (status == CP_OK)
+        status = cp_query_number(store, "SELECT count(*) FROM crash", &crashes, error);
+    if (status == CP_OK && done > 0)
+        status = cp_query_number(
+            store, "SELECT coalesce(avg(wall_time_s), -1) FROM attempt WHERE outcome = 'done'",
+            &mean_s, error);
+    if (status == CP_OK)
+        status = find_owners(store, &found, error);
+    if (status != CP_OK)
+        return status;
+    printf("\n%.0f of %.0f replications done, %.0f crashes so far, %zu running", done, all, crashes,
+           found.alive);
+    if (found.lost > 0)
+        printf(", %zu lost", found.lost);
+    if (done < all && found.alive == 0)
+        printf("; nothing runs");
+    else if (done < all && mean_s > 0)
+        printf("; about %.0f s left", mean_s * (all - done) / (double)found.alive);
+    printf("\n");
+    return CP_OK;
+}
+
+cp_status cmd_status(int argc, char **argv, cp_error *error)
+{
+    arguments a = {0};
+    cp_args_parse(&ARGP, argc, argv, &a);
+
+    cp_store *store = NULL;
+    cp_status status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+    if (status == CP_OK)
+        status = print_progress(store, a.format, error);
+    if (status == CP_OK && a.format == CP_FORMAT_TABLE)
+        status = print_summary(store, error);
+    if (status == CP_OK && a.format == CP_FORMAT_TABLE)
+        status = print_failures(store, error);
+    cp_store_close(store);
+    return status;
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RUN_SUMO_WORDS_H
+#define RUN_SUMO_WORDS_H
+
+#include "study/study_file.h"
+
+/* The further SUMO options of one replication: those of its scenario, and an output prefix of its
+ * own. Whatever files the .sumocfg or an option writes (tripinfo.xml), parallel replications write
+ * each their own: left_turn_aeb_421632325_tripinfo.xml. A prefix the scenario gives follows ours.
+ */
+
+typedef struct cp_sumo_words {
+    char **word;
+    size_t count;
+} cp_sumo_words;
+
+/* The caller destroys. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_sumo_words_create(const cp_study_scenario *scenario,
+                                             const cp_study_variant *variant, uint64_t seed,
+                                             cp_sumo_words *words, cp_error *error);
+void cp_sumo_words_destroy(cp_sumo_words *words);
+
+#endif

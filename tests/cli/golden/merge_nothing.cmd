@@ -1,0 +1,1 @@
+"$crashpulse" merge out.db

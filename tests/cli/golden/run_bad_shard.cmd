@@ -1,0 +1,1 @@
+$crashpulse run x.yaml --db x.db --shard 5/4

@@ -1,0 +1,1 @@
+"$crashpulse" status none.db

@@ -1,0 +1,1 @@
+"$crashpulse" submit x.yaml --db x.db

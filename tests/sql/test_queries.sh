@@ -1,9 +1,19 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# test_queries.sh DATABASE: every file of db/queries runs by plain sqlite3, opens with a comment,
-# gives rows, writes nothing, and agrees with what is counted another way.
+# test_queries.sh DATABASE EXTENSION FOLDER: every file of db/queries runs by the stock sqlite3 with
+# the extension loaded, opens with a comment, writes nothing, gives exactly the rows recorded in
+# golden/, and agrees with what is counted another way. What was seen is left in FOLDER.
 set -eu
 db=$1
+extension=$2
+seen=$3
+golden=$(dirname "$0")/golden
+mkdir -p "$seen"
+# With sanitizers their runtime has to be there before the stock shell's first allocation.
+shell() {
+    LD_PRELOAD="${CRASHPULSE_PRELOAD:-}" ASAN_OPTIONS=detect_leaks=0 \
+        sqlite3 -readonly -batch -bail -cmd ".load '${extension%.so}'" "$db"
+}
 queries=$(dirname "$0")/../../db/queries
 failures=0
 
@@ -25,9 +35,16 @@ sum() {
 for file in "$queries"/*.sql; do
     name=$(basename "$file")
     sed -n 2p "$file" | grep -q '^-- [A-Z]' || fail "$name: the second line says what it asks"
-    rows=$(sqlite3 -readonly -batch -bail "$db" <"$file" | wc -l) || fail "$name: does not run"
-    [ "$rows" -gt 0 ] || fail "$name: no rows"
+    name=${name%.sql}
+    shell <"$file" >"$seen/$name.out" || fail "$name: does not run"
+    [ -s "$seen/$name.out" ] || fail "$name: no rows"
+    diff -u "$golden/$name.out" "$seen/$name.out" >&2 || fail "$name: other rows"
+    # Queries that do not say so need no extension.
+    grep -q 'Needs the SQL extension' "$file" ||
+        sqlite3 -readonly -batch -bail "$db" <"$file" | diff -q - "$seen/$name.out" >/dev/null ||
+        fail "$name: needs the extension and does not say so"
 done
+[ "$(ls "$queries"/*.sql | wc -l)" -ge 20 ] || fail "fewer than twenty queries"
 
 one() {
     sqlite3 -readonly -batch "$db" "$1"
@@ -56,4 +73,17 @@ expect "first share of aeb" \
 expect "medians of olc_quantiles" \
     "$(sqlite3 -readonly "$db" <"$queries/olc_quantiles.sql" | awk -F'|' '$2 == "all" { printf "%.9f\n", $7 }')" \
     "$(one "SELECT printf('%.9f', olc_median_g) FROM olc_by_variant")"
+# The distribution's own median, by the extension and in plain SQL.
+expect "median of variant_effect" \
+    "$(shell <"$queries/variant_effect.sql" | cut -d'|' -f4,5)" \
+    "$(one "SELECT group_concat(round(olc_median_g, 2), '|') FROM olc_by_variant")"
+expect "crashes of crash_map" "$(sum 4 crash_map)" "$(one 'SELECT count(*) FROM crash')"
+expect "crashes of crash_types" "$(sum 3 crash_types)" "$(one 'SELECT count(*) FROM crash')"
+expect "vehicles of at_fault" "$(sum 4 at_fault)" "$(one 'SELECT count(*) FROM crash_vehicle')"
+expect "crashes of both_vehicles" "$(sum 4 both_vehicles)" \
+    "$(one "SELECT count(*) FROM crash WHERE crash_type = 'front-front'")"
+expect "last rows of convergence" \
+    "$(shell <"$queries/convergence.sql" | awk -F'|' '$2 == 7 { print $3 "|" $5 }' | paste -sd' ')" \
+    "$(one "SELECT group_concat(frontal_crashes || '|' || round(olc_median_g, 2), ' ') FROM
+            (SELECT * FROM olc_by_variant ORDER BY variant)")"
 [ "$failures" -eq 0 ]

@@ -193,10 +193,10 @@ def hanging_worker(folder, study, undisturbed):
     script.chmod(0o755)
     db = folder / "hanging.db"
     result = crossing_study.run(programs / "crashpulse", "run", study, "--db", db, "--jobs", "2",
-                                "--time-limit", "20", expect=1)
-    says(result, "1 of 8 replications failed", "no end after 20 s", "Step #12.50 is taking its time")
+                                "--time-limit", "30", expect=1)
+    says(result, "1 of 8 replications failed", "no end after 30 s", "Step #12.50 is taking its time")
     status = run("status", db).stdout
-    assert "7 of 8 replications done" in status and "no end after 20 s" in status, status
+    assert "7 of 8 replications done" in status and "no end after 30 s" in status, status
     run("run", study, "--db", db)
     crossing_study.assert_same(db, undisturbed)
 

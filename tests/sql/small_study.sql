@@ -112,11 +112,6 @@ INSERT INTO sumo_collision (replication_id, number, time_s, collider, victim, su
 SELECT replication_id, number, time_s, 'flow.' || 10 * number, 'flow.' || (10 * number + 1),
        'collision', 'crash' FROM crash;
 
--- One pulse as codec 2 packs it, for the four vehicles with the highest OLC.
-INSERT INTO pulse (crash_id, role, codec, sample_interval_s, sample_count, samples)
-SELECT crash_id, role, 2, 0.001, 201, x'c2c901c0843d28b52ffd61013606ed0c0083543ebafbf357a3423dfcee597bcfddccff797b7fd6d887b2b92933e69dad27020df8badf113770024e0295c987480c37fcf08390cfd61eef420a4de9089697177b897995e2f72a712ad79e8896bc64345d932b37912483a303e423a32333825dd6ad92a306b7d24b4cc97bb979a79054fae9f1d805c4a5302045a7c05d70199c044fc0d5b8e2ca4b6acab5b009d082a4e710083a023e83be0ca6c4b06521702f20c7e3e42bf5f0153c02504624148aab41c89ef12948298a923d06afc269e13816de464780b358315a065b07902d422f8067f0014c9572e604cf12667283fa3ddce04e6daec68e5a776bccd999b75bcf3db5d5c3c33394acb05b0348fc40d907e54de0722710f56d0fccdad2d5f48b98a520641e3cdacdc3740c8d8d07f1db5aaafe6ad3b40e0584ac4ab6f98432be57135f5821c957df3421c316e0e810b857641bc5da6f2255f234516dc30d24ff2b45f58729f18e0112b2968df51576523c7aa847d8fffa012b98932054b50332a00869786facd1b232381b1ac3b3f280c1da167905b122325d7337ba4c814eef29280e171a147922c26d126603'
-FROM crash_vehicle WHERE olc_g IS NOT NULL ORDER BY olc_g DESC, crash_id, role LIMIT 4;
-
 DROP TABLE temp.draw;
 DROP TABLE temp.invented;
 COMMIT;

@@ -9,6 +9,10 @@ extension=$2
 seen=$3
 golden=$(dirname "$0")/golden
 mkdir -p "$seen"
+# The small study with pulses in it.
+cp "$db" "$seen/study.db"
+db=$seen/study.db
+sqlite3 -batch -bail "$db" <"$(dirname "$0")/small_study_pulses.sql"
 # With sanitizers their runtime has to be there before the stock shell's first allocation.
 shell() {
     LD_PRELOAD="${CRASHPULSE_PRELOAD:-}" ASAN_OPTIONS=detect_leaks=0 \

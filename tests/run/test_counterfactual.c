@@ -232,8 +232,9 @@ static void assert_same_files(const fixture *f, const char *one, const char *oth
     size_t size[2];
     const char *names[2] = {one, other};
     cp_error error = {0};
+    double seed = number_of(f, "plain", "SELECT seed FROM replication");
     for (int k = 0; k < 2; k++) {
-        snprintf(path, sizeof path, "%s/%s", f->folder, names[k]);
+        snprintf(path, sizeof path, "%s/crossing_baseline_%.0f_%s", f->folder, seed, names[k]);
         assert_ok(cp_file_read(path, &text[k], &size[k], &error), &error);
         // But for the command line in the comment at the beginning.
         char *body = strstr(text[k], "-->");

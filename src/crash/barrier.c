@@ -18,7 +18,7 @@ cp_outline cp_barrier_outline(const cp_barrier *barrier, cp_pose pose)
         .along = depth,
         .half_length_m = 0.5 * barrier->depth_m,
         .half_width_m = 0.5 * barrier->width_m,
-        .radius_m = barrier->corner_radius_m};
+        .radius_m = fmin(barrier->corner_radius_m, 0.5 * fmin(barrier->width_m, barrier->depth_m))};
 }
 
 cp_status cp_barrier_validate(const cp_barrier *barrier, cp_error *error)
@@ -29,8 +29,9 @@ cp_status cp_barrier_validate(const cp_barrier *barrier, cp_error *error)
     if (!(barrier->depth_m >= 0.3 && barrier->depth_m <= 20.0))
         return cp_fail(error, CP_BAD_INPUT, "barrier depth_m must be between 0.3 and 20, found %g",
                        barrier->depth_m);
+    const double rounding_m = 1e-6; // of numbers in a file
     double largest_m = 0.5 * fmin(barrier->width_m, barrier->depth_m);
-    if (!(barrier->corner_radius_m >= 0.0 && barrier->corner_radius_m <= largest_m))
+    if (!(barrier->corner_radius_m >= 0.0 && barrier->corner_radius_m <= largest_m + rounding_m))
         return cp_fail(error, CP_BAD_INPUT,
                        "barrier corner_radius_m must be between 0 and %g, found %g", largest_m,
                        barrier->corner_radius_m);

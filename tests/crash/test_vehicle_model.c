@@ -104,6 +104,26 @@ static void fields_must_fit_each_other(void **state)
     expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: 550}\n", "", "mass_kg");
 }
 
+// Half of a length, both written with nine digits, is no more than half of it.
+static void rounding_of_a_file_is_no_error(void **state)
+{
+    (void)state;
+    cp_vehicle_model model;
+    cp_error error = {0};
+    cp_status status =
+        load_text("vehicle: x\nbarrier: {width_m: 2, depth_m: 0.619412345, corner_radius_m: "
+                  "0.309706173, pivot_m: 0}\nparameters:\n  - {name: crash_box_length_m, value: "
+                  "0.200000001}\n  - {name: crash_box_collapse_end_m, value: 0.200000002}\n",
+                  &model, &error);
+    if (status != CP_OK)
+        fail_msg("%s", error.text);
+    cp_outline outline = cp_barrier_outline(&model.barrier, (cp_pose){{0.0, 0.0}, 0.0});
+    assert_true(outline.radius_m <= outline.half_length_m);
+    expect_refusal("vehicle: x\nbarrier: {width_m: 2, depth_m: 0.6, corner_radius_m: 0.31, "
+                   "pivot_m: 0}\nparameters: []\n",
+                   "", "corner_radius_m");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -111,6 +131,7 @@ int main(void)
         cmocka_unit_test(a_file_sets_what_it_names),
         cmocka_unit_test(every_error_names_line_and_field),
         cmocka_unit_test(fields_must_fit_each_other),
+        cmocka_unit_test(rounding_of_a_file_is_no_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

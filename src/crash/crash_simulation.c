@@ -389,26 +389,15 @@ static void watch_common_velocity(crash_run *run, double time_s, double dt)
     run->last_approach_m_s = now_m_s;
 }
 
-static bool olc_decided(const crash_run *run)
+// Whether every car's OLC lies behind: no later motion changes it. One that has none yet lies ahead
+// when the motion goes on (awaited), and never comes when it has ended.
+static bool olc_passed(const crash_run *run, bool awaited)
 {
     double dt = run->options->time_step_s;
     for (int c = 0; c < run->car_count; c++) {
         cp_olc olc =
             cp_olc_from_velocity(run->result->pulse[c].channel[CP_CHANNEL_VX], run->sample + 1, dt);
-        if (olc.status == CP_OLC_VALUE && olc.t2_s > dt * (double)run->sample)
-            return false;
-    }
-    return true;
-}
-
-// Whether every car's OLC already lies behind: no later motion changes it.
-static bool olc_passed(const crash_run *run)
-{
-    double dt = run->options->time_step_s;
-    for (int c = 0; c < run->car_count; c++) {
-        cp_olc olc =
-            cp_olc_from_velocity(run->result->pulse[c].channel[CP_CHANNEL_VX], run->sample + 1, dt);
-        if (olc.status != CP_OLC_VALUE || olc.t2_s > dt * (double)run->sample)
+        if (olc.status == CP_OLC_VALUE ? olc.t2_s > dt * (double)run->sample : awaited)
             return false;
     }
     return true;
@@ -452,7 +441,7 @@ static cp_status simulate_contact(crash_run *run, cp_error *error)
                            "the crash simulation left the finite numbers at %g s",
                            dt * (double)run->sample);
         watch_common_velocity(run, dt * (double)run->sample, dt);
-        if (options->until_olc && run->sample % OLC_EVERY == 0 && olc_passed(run))
+        if (options->until_olc && run->sample % OLC_EVERY == 0 && olc_passed(run, true))
             return CP_OK;
         size_t quiet = run->sample - last_pressed;
         if (quiet >= coast_after && quiet % coast_after == 0)
@@ -465,7 +454,7 @@ static cp_status simulate_contact(crash_run *run, cp_error *error)
     size_t end = run->sample > wanted ? run->sample : wanted;
     if (run->sample < end)
         coast(run, end, dt);
-    if (!olc_decided(run))
+    if (!olc_passed(run, false))
         coast(run, longest, dt);
     return CP_OK;
 }

@@ -57,6 +57,22 @@ cp_status cp_equipment_has(cp_equipment *equipment, const cp_traffic *traffic, u
     return CP_OK;
 }
 
+cp_status cp_equipment_each(cp_equipment *equipment, const cp_traffic *traffic,
+                            cp_equipped_visit visit, void *state, const void *context,
+                            cp_error *error)
+{
+    size_t count;
+    const cp_vehicle_motion *motions = cp_traffic_motions(traffic, &count);
+    cp_status status = CP_OK;
+    for (size_t k = 0; k < count && status == CP_OK; k++) {
+        bool has = false;
+        status = cp_equipment_has(equipment, traffic, motions[k].after.vehicle, &has, error);
+        if (status == CP_OK && has)
+            status = visit(state, context, &motions[k], error);
+    }
+    return status;
+}
+
 bool cp_equipment_is_any(const cp_equipment *equipment)
 {
     if (equipment->penetration_1 > 0.0)

@@ -33,6 +33,13 @@ typedef struct cp_equipment {
 /* Whether a vehicle on the road has it. Error: CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_equipment_has(cp_equipment *equipment, const cp_traffic *traffic,
                                          uint32_t vehicle, bool *has, cp_error *error);
+/* Visit every car on the road that has it, in the order of the motions; ends with the first error.
+ */
+typedef cp_status (*cp_equipped_visit)(void *state, const void *context,
+                                       const cp_vehicle_motion *motion, cp_error *error);
+CP_MUST_CHECK cp_status cp_equipment_each(cp_equipment *equipment, const cp_traffic *traffic,
+                                          cp_equipped_visit visit, void *state, const void *context,
+                                          cp_error *error);
 /* Whether anybody can have it at all. */
 bool cp_equipment_is_any(const cp_equipment *equipment);
 void cp_equipment_destroy(cp_equipment *equipment);

@@ -214,24 +214,23 @@ static cp_status step_car(fcw *self, const cp_control_context *context,
     return status;
 }
 
+static cp_status step_equipped(void *state, const void *context, const cp_vehicle_motion *motion,
+                               cp_error *error)
+{
+    fcw *self = state;
+    cp_status status = reserve(self, motion->after.vehicle, error);
+    return status == CP_OK ? step_car(self, context, motion, error) : status;
+}
+
 static cp_status step(void *state, const cp_control_context *context, cp_error *error)
 {
     fcw *self = state;
     if (!cp_equipment_is_any(context->equipment))
         return CP_OK;
-    size_t count;
-    const cp_vehicle_motion *motions = cp_traffic_motions(self->traffic, &count);
     cp_status status = cp_lookout_step(&self->lookout, error);
-    for (size_t k = 0; k < count && status == CP_OK; k++) {
-        bool has = false;
-        uint32_t vehicle = motions[k].after.vehicle;
-        status = reserve(self, vehicle, error);
-        if (status == CP_OK)
-            status = cp_equipment_has(context->equipment, self->traffic, vehicle, &has, error);
-        if (status == CP_OK && has)
-            status = step_car(self, context, &motions[k], error);
-    }
-    return status;
+    return status == CP_OK ? cp_equipment_each(context->equipment, self->traffic, step_equipped,
+                                               self, context, error)
+                           : status;
 }
 
 static size_t counters(const void *state, const char **names, double *values, size_t room)

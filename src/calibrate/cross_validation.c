@@ -4,6 +4,7 @@
 #include "core/log.h"
 #include "core/rng.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -60,6 +61,20 @@ static void part_stem(const cp_fit *fit, cp_cross_kind kind, size_t part, char s
     snprintf(stem, 4096, "%s.%s%zu", fit->output_path, KIND_WORD[kind], part + 1);
 }
 
+// Mean absolute errors of the cases a fit has seen and of those it has not.
+static void log_part(const cp_fit *fit, const bool *use, const double *olc_g)
+{
+    double sum_g[2] = {0.0, 0.0};
+    size_t cases[2] = {0, 0};
+    for (size_t k = 0; k < fit->reference.count; k++) {
+        sum_g[use[k]] += fabs(olc_g[k] - fit->reference.cases[k].olc_g);
+        cases[use[k]]++;
+    }
+    cp_log_info("cross-validation: fitted to %zu configurations by %.3f g, the %zu held out "
+                "predicted by %.3f g",
+                cases[1], sum_g[1] / (double)cases[1], cases[0], sum_g[0] / (double)cases[0]);
+}
+
 // Fit without each part in turn, predict the part.
 static cp_status predict_parts(const cp_fit *fit, cp_cross_validation *cross, const size_t *part,
                                bool *use, cp_fit_work *work, cp_error *error)
@@ -79,6 +94,8 @@ static cp_status predict_parts(const cp_fit *fit, cp_cross_validation *cross, co
         for (size_t k = 0; status == CP_OK && k < fit->reference.count; k++)
             if (!use[k])
                 cross->held_out_g[k] = work->olc_g[k];
+        if (status == CP_OK)
+            log_part(fit, use, work->olc_g);
     }
     return status;
 }

@@ -59,6 +59,8 @@ typedef struct yaml_fit {
     char *local_evaluations;
     char *starts;
     char *slope_evaluations;
+    char *soft_g;
+    char *prior_g;
     char *folds;
     char **leave_out;
     unsigned leave_out_count;
@@ -124,6 +126,8 @@ static const cyaml_schema_field_t FIT_FIELDS[] = {
     OPTIONAL_TEXT(local_evaluations, yaml_fit),
     OPTIONAL_TEXT(starts, yaml_fit),
     OPTIONAL_TEXT(slope_evaluations, yaml_fit),
+    OPTIONAL_TEXT(soft_g, yaml_fit),
+    OPTIONAL_TEXT(prior_g, yaml_fit),
     OPTIONAL_TEXT(folds, yaml_fit),
     CYAML_FIELD_SEQUENCE("leave_out", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit, leave_out,
                          &WORD_VALUE, 1, 3),
@@ -155,6 +159,7 @@ static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp
     size_t seed = 0, threads = 1;
     fit->global_time_step_s = 0.0005;
     fit->local_time_step_s = 0.0005;
+    fit->soft_g = 0.3;
     cp_status status = read_count(file, "seed", yaml->seed, 0, UINT32_MAX, 0, &seed, error);
     if (status == CP_OK)
         status =
@@ -180,6 +185,10 @@ static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp
     if (status == CP_OK)
         status = cp_yaml_number(file, "local_time_step_s", yaml->local_time_step_s, 1e-5, 0.002,
                                 &fit->local_time_step_s, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "soft_g", yaml->soft_g, 0.01, 100, &fit->soft_g, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "prior_g", yaml->prior_g, 0, 1000, &fit->prior_g, error);
     fit->seed = (uint32_t)seed;
     fit->threads = (int)threads;
     return status;
@@ -328,8 +337,8 @@ static cp_status read_objective(const cp_yaml_file *file, const yaml_fit *yaml, 
                             by_pulse ? "goes with objective olc"
                                      : "is missing: objective olc needs the OLC values to fit");
     fit->objective = by_pulse ? CP_FIT_PULSE : CP_FIT_OLC;
-    if (by_pulse && yaml->slope_evaluations != NULL)
-        return cp_yaml_fail(file, error, "slope_evaluations", "goes with objective olc");
+    if (by_pulse && yaml->prior_g != NULL)
+        return cp_yaml_fail(file, error, "prior_g", "goes with objective olc");
     return CP_OK;
 }
 

@@ -52,9 +52,15 @@ typedef struct cp_fit {
     size_t starts;             /* global searches from other seeds; the best counts; default 1 */
     size_t slope_evaluations;  /* of least squares, default 0: none; of several starts each gets
                                   a quarter, then the best all */
-    size_t folds;              /* of the cross-validation, default 0: none */
-    bool leave_out[4];         /* also leave out one level at a time of: -, speed, offset, angle
-                                  (index: cp_cross_kind) */
+    double soft_g;     /* error from which on least squares count the absolute value, not the
+                          square; default 0.3 */
+    double prior_g;    /* what an unknown must take off the summed errors to move through the
+                          whole of its bounds from its value in base, so that those the
+                          references say little of stay where they are known to be; default
+                          0: free */
+    size_t folds;      /* of the cross-validation, default 0: none */
+    bool leave_out[4]; /* also leave out one level at a time of: -, speed, offset, angle
+                          (index: cp_cross_kind) */
     cp_plausibility plausible; /* bounds of the pulse's marks */
     int threads;               /* default 1 */
     size_t unknown_count;

@@ -28,6 +28,7 @@ typedef struct search {
     double time_step_s;
     cp_fit_work *work;
     double excess_1[CP_MARK_COUNT]; /* of the candidate judged last */
+    double known[CP_UNKNOWNS_MAX];  /* point of the base vehicle */
     cp_progress progress;
     cp_status failed;
     cp_error *error;
@@ -37,9 +38,13 @@ cp_status cp_fit_work_create(const cp_fit *fit, cp_fit_work *work, cp_error *err
 {
     *work = (cp_fit_work){0};
     work->olc_g = calloc(fit->reference.count, sizeof *work->olc_g);
-    if (fit->objective == CP_FIT_PULSE)
+    if (fit->objective == CP_FIT_PULSE) {
         work->pulse_error = calloc(fit->pulse_count, sizeof *work->pulse_error);
-    if (work->olc_g == NULL || (fit->objective == CP_FIT_PULSE && work->pulse_error == NULL))
+        work->pulse_misfit =
+            calloc(fit->pulse_count * CP_PULSE_MISFITS, sizeof *work->pulse_misfit);
+    }
+    if (work->olc_g == NULL || (fit->objective == CP_FIT_PULSE &&
+                                (work->pulse_error == NULL || work->pulse_misfit == NULL)))
         return cp_fail_memory(error, "calibration");
     return CP_OK;
 }
@@ -48,6 +53,7 @@ void cp_fit_work_destroy(cp_fit_work *work)
 {
     free(work->olc_g);
     free(work->pulse_error);
+    free(work->pulse_misfit);
     *work = (cp_fit_work){0};
 }
 
@@ -94,8 +100,9 @@ static cp_status judge_model(search *run, const cp_vehicle_model *model, const b
             *value += EXCESS_G * fabs(run->excess_1[k]);
         return CP_OK;
     }
-    cp_status status = cp_objective_pulse(model, fit->pulses, fit->pulse_count, run->time_step_s,
-                                          fit->threads, run->work->pulse_error, run->error);
+    cp_status status =
+        cp_objective_pulse(model, fit->pulses, fit->pulse_count, run->time_step_s, fit->threads,
+                           run->work->pulse_error, run->work->pulse_misfit, run->error);
     if (status != CP_OK)
         return status;
     for (size_t k = 0; k < fit->pulse_count; k++) {
@@ -106,6 +113,18 @@ static cp_status judge_model(search *run, const cp_vehicle_model *model, const b
     *value = cp_objective_pulse_mean(fit->pulses, run->work->pulse_error, fit->pulse_count,
                                      run->use, PENALTY_TOTAL);
     return CP_OK;
+}
+
+// What the way from what is known of the car costs, spread over the cases as their errors are.
+static double prior_cost(const search *run, const double *point, size_t dimension)
+{
+    size_t used = 0;
+    for (size_t k = 0; k < run->fit->reference.count; k++)
+        used += run->use == NULL || run->use[k];
+    double way_1 = 0.0;
+    for (size_t k = 0; k < dimension; k++)
+        way_1 += fabs(point[k] - run->known[k]);
+    return used > 0 ? run->fit->prior_g * way_1 / (double)used : 0.0;
 }
 
 static double value_at(void *context, const double *point, size_t dimension)
@@ -120,17 +139,29 @@ static double value_at(void *context, const double *point, size_t dimension)
     cp_status status = judge_model(run, &model, run->use, &value);
     if (status != CP_OK)
         run->failed = status;
-    return value;
+    return value + prior_cost(run, point, dimension);
 }
 
-// Signed errors of the cases in use, then how far the marks are outside; the value beside them.
-static double residuals_at(void *context, const double *point, size_t dimension, double *residual,
-                           size_t count)
+// Misfits of the pulses in use, each by its weight.
+static size_t pulse_residuals(const search *run, bool no_car, double *residual)
 {
-    search *run = context;
+    const cp_fit *fit = run->fit;
+    size_t row = 0;
+    for (size_t k = 0; k < fit->pulse_count; k++) {
+        if (run->use != NULL && !run->use[k])
+            continue;
+        const double *misfit = run->work->pulse_misfit + k * CP_PULSE_MISFITS;
+        for (size_t m = 0; m < CP_PULSE_MISFITS; m++)
+            residual[row++] =
+                fit->pulses[k].weight_1 * (no_car || isnan(misfit[m]) ? PENALTY_G : misfit[m]);
+    }
+    return row;
+}
+
+// Signed errors of the cases in use, and how far the marks are outside.
+static size_t olc_residuals(const search *run, bool no_car, double *residual)
+{
     const cp_reference *reference = &run->fit->reference;
-    double value = value_at(run, point, dimension);
-    bool no_car = value >= PENALTY_G;
     size_t row = 0;
     for (size_t k = 0; k < reference->count; k++) {
         if (run->use != NULL && !run->use[k])
@@ -138,8 +169,22 @@ static double residuals_at(void *context, const double *point, size_t dimension,
         double olc_g = run->work->olc_g[k];
         residual[row++] = no_car || isnan(olc_g) ? PENALTY_G : olc_g - reference->cases[k].olc_g;
     }
-    for (int k = 0; row < count; k++)
+    for (int k = 0; run->fit->plausible.given && k < CP_MARK_COUNT; k++)
         residual[row++] = no_car ? PENALTY_G : EXCESS_RESIDUAL_G * run->excess_1[k];
+    return row;
+}
+
+// All misfits with their sign, then how far the unknowns have come; the value beside them.
+static double residuals_at(void *context, const double *point, size_t dimension, double *residual,
+                           size_t count)
+{
+    search *run = context;
+    double value = value_at(run, point, dimension);
+    bool no_car = value >= penalty_of(run->fit);
+    size_t row = run->fit->objective == CP_FIT_PULSE ? pulse_residuals(run, no_car, residual)
+                                                     : olc_residuals(run, no_car, residual);
+    for (size_t k = 0; row < count; k++)
+        residual[row++] = run->fit->prior_g * (point[k] - run->known[k]);
     return value;
 }
 
@@ -163,13 +208,11 @@ static void show_progress(void *context, size_t done, double best)
 static cp_status search_globally(search *run, const char *state_path, uint32_t seed, double *point)
 {
     const cp_fit *fit = run->fit;
-    double start[CP_UNKNOWNS_MAX];
-    cp_candidate_point(&fit->base, fit->unknown, fit->unknown_count, start);
     cp_optimiser_settings settings = {.algorithm = fit->algorithm,
                                       .dimension = fit->unknown_count,
                                       .population = fit->population,
                                       .seed = seed,
-                                      .start = start,
+                                      .start = run->known,
                                       .function = value_at,
                                       .context = run};
     cp_optimiser *optimiser = NULL;
@@ -196,10 +239,13 @@ static cp_status search_globally(search *run, const char *state_path, uint32_t s
 
 static size_t residual_count(const search *run)
 {
-    size_t count = run->fit->plausible.given ? (size_t)CP_MARK_COUNT : 0;
-    for (size_t k = 0; k < run->fit->reference.count; k++)
-        count += run->use == NULL || run->use[k];
-    return count;
+    const cp_fit *fit = run->fit;
+    size_t used = 0;
+    for (size_t k = 0; k < fit->reference.count; k++)
+        used += run->use == NULL || run->use[k];
+    return used * (fit->objective == CP_FIT_PULSE ? (size_t)CP_PULSE_MISFITS : 1) +
+           (fit->plausible.given ? (size_t)CP_MARK_COUNT : 0) +
+           (fit->prior_g > 0.0 ? fit->unknown_count : 0);
 }
 
 // Down the slopes of all misfits.
@@ -213,7 +259,7 @@ static cp_status search_slopes(search *run, size_t evaluations, double *point)
                                  .context = run,
                                  .dimension = fit->unknown_count,
                                  .count = residual_count(run),
-                                 .soft = 0.3,
+                                 .soft = fit->soft_g,
                                  .step = 0.01,
                                  .evaluations = evaluations,
                                  .progress = show_progress};
@@ -307,6 +353,7 @@ cp_status cp_fit_search(const cp_fit *fit, const bool *use, const char *state_st
                         cp_vehicle_model *model, double *value, cp_fit_work *work, cp_error *error)
 {
     search run = {.fit = fit, .use = use, .work = work, .failed = CP_OK, .error = error};
+    cp_candidate_point(&fit->base, fit->unknown, fit->unknown_count, run.known);
     double point[CP_UNKNOWNS_MAX] = {0};
     cp_status status = search_starts(&run, state_stem, seed, point);
     if (status == CP_OK)

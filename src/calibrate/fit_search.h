@@ -14,7 +14,8 @@
 /* What a model does in every case. */
 typedef struct cp_fit_work {
     double *olc_g;               /* one a case, 0 where left-censored */
-    cp_pulse_error *pulse_error; /* one a pulse; NULL by objective olc */
+    cp_pulse_error *pulse_error; /* one a pulse; NULL by objective olc, as the next */
+    double *pulse_misfit;        /* CP_PULSE_MISFITS a pulse */
 } cp_fit_work;
 
 /* The caller destroys. Errors: CP_NO_MEMORY. */

@@ -31,16 +31,32 @@ cp_status cp_reference_pulse_simulate(const cp_vehicle_model *model,
                            : status;
 }
 
-// Mean absolute difference of a channel of the model to the reference's, in units of unit_si.
-static double mean_error(const cp_pulse *pulse, cp_pulse_channel channel, double unit_si,
-                         const cp_reference_pulse *reference, const double *values)
+// One channel of both, and where its misfits go.
+typedef struct channel_look {
+    cp_pulse_channel channel;
+    double unit_si;       /* of the reference */
+    const double *values; /* of the reference */
+    double weight_1;
+    double *misfit; /* CP_PULSE_STRETCHES, or NULL */
+} channel_look;
+
+// Mean absolute difference of a channel of the model to the reference's, in the latter's unit.
+static double mean_error(const cp_pulse *pulse, const cp_reference_pulse *reference,
+                         const channel_look *look)
 {
-    double sum = 0.0;
+    double sum = 0.0, part[CP_PULSE_STRETCHES] = {0.0};
+    size_t samples[CP_PULSE_STRETCHES] = {0};
     for (size_t k = 0; k < reference->count; k++) {
-        double own = cp_samples_at(pulse->channel[channel], pulse->sample_count,
+        double own = cp_samples_at(pulse->channel[look->channel], pulse->sample_count,
                                    pulse->sample_interval_s, (double)k * reference->interval_s);
-        sum += fabs(own / unit_si - values[k]);
+        double apart = own / look->unit_si - look->values[k];
+        size_t stretch = k * CP_PULSE_STRETCHES / reference->count;
+        sum += fabs(apart);
+        part[stretch] += apart;
+        samples[stretch]++;
     }
+    for (size_t s = 0; look->misfit != NULL && s < CP_PULSE_STRETCHES; s++)
+        look->misfit[s] = samples[s] > 0 ? look->weight_1 * part[s] / (double)samples[s] : 0.0;
     return sum / (double)reference->count;
 }
 
@@ -61,8 +77,30 @@ static double standstill_s(const cp_pulse_marks *marks, double until_s)
     return isnan(marks->t_v0_s) ? until_s : fmin(marks->t_v0_s, until_s);
 }
 
+// Mean errors of the channels the reference has, and their misfits.
+static void compare_channels(const cp_reference_pulse *reference, const cp_pulse *filtered,
+                             cp_pulse_error *found, double *misfit)
+{
+    const channel_look looks[4] = {
+        {CP_CHANNEL_AX, CP_G0_M_S2, reference->ax_g, 1.0, NULL},
+        {CP_CHANNEL_AY, CP_G0_M_S2, reference->ay_g, 1.0, NULL},
+        {CP_CHANNEL_VX, 1.0, reference->vx_m_s, VELOCITY_WEIGHT, NULL},
+        {CP_CHANNEL_VY, 1.0, reference->vy_m_s, VELOCITY_WEIGHT, NULL},
+    };
+    double *mean[4] = {&found->ax_g, &found->ay_g, &found->vx_m_s, &found->vy_m_s};
+    for (size_t c = 0; misfit != NULL && c < CP_PULSE_MISFITS; c++)
+        misfit[c] = 0.0;
+    for (size_t c = 0; c < 4; c++) {
+        bool longitudinal = c % 2 == 0;
+        channel_look look = looks[c];
+        look.misfit = misfit != NULL ? misfit + c * CP_PULSE_STRETCHES : NULL;
+        if (longitudinal || reference->lateral)
+            *mean[c] = mean_error(filtered, reference, &look);
+    }
+}
+
 cp_status cp_pulse_compare(const cp_reference_pulse *reference, const cp_crash_result *result,
-                           cp_pulse_error *found, cp_error *error)
+                           cp_pulse_error *found, double *misfit, cp_error *error)
 {
     cp_pulse filtered = {0};
     cp_status status = cp_pulse_filtered(&result->pulse[0], 60.0, &filtered, error);
@@ -73,12 +111,7 @@ cp_status cp_pulse_compare(const cp_reference_pulse *reference, const cp_crash_r
                                         .t_v0_s = severity->t_v0_s,
                                         .peak_g = severity->peak_g,
                                         .crush_m = largest_displacement_m(&result->pulse[0])}};
-    found->ax_g = mean_error(&filtered, CP_CHANNEL_AX, CP_G0_M_S2, reference, reference->ax_g);
-    found->vx_m_s = mean_error(&filtered, CP_CHANNEL_VX, 1.0, reference, reference->vx_m_s);
-    if (reference->lateral) {
-        found->ay_g = mean_error(&filtered, CP_CHANNEL_AY, CP_G0_M_S2, reference, reference->ay_g);
-        found->vy_m_s = mean_error(&filtered, CP_CHANNEL_VY, 1.0, reference, reference->vy_m_s);
-    }
+    compare_channels(reference, &filtered, found, misfit);
     cp_pulse_destroy(&filtered);
     found->t_v0_s = fabs(standstill_s(&found->model, reference->until_s) -
                          standstill_s(&reference->marks, reference->until_s));
@@ -93,17 +126,21 @@ typedef struct evaluation {
     const cp_reference_pulse *pulses;
     double time_step_s;
     cp_pulse_error *errors;
+    double *misfits;
 } evaluation;
 
 static void evaluate_pulse(void *context, size_t k)
 {
     evaluation *work = context;
+    double *misfit = work->misfits != NULL ? work->misfits + k * CP_PULSE_MISFITS : NULL;
     cp_crash_result result;
     cp_error error = {0};
     cp_status status = cp_reference_pulse_simulate(work->model, &work->pulses[k], work->time_step_s,
                                                    &result, &error);
     if (status == CP_OK)
-        status = cp_pulse_compare(&work->pulses[k], &result, &work->errors[k], &error);
+        status = cp_pulse_compare(&work->pulses[k], &result, &work->errors[k], misfit, &error);
+    for (size_t m = 0; status != CP_OK && misfit != NULL && m < CP_PULSE_MISFITS; m++)
+        misfit[m] = NAN;
     if (status != CP_OK)
         work->errors[k] =
             (cp_pulse_error){NAN, NAN, NAN, NAN, NAN, NAN, .model = {NAN, NAN, NAN, NAN}};
@@ -112,9 +149,9 @@ static void evaluate_pulse(void *context, size_t k)
 
 cp_status cp_objective_pulse(const cp_vehicle_model *model, const cp_reference_pulse *pulses,
                              size_t count, double time_step_s, int threads, cp_pulse_error *errors,
-                             cp_error *error)
+                             double *misfits, cp_error *error)
 {
-    evaluation work = {model, pulses, time_step_s, errors};
+    evaluation work = {model, pulses, time_step_s, errors, misfits};
     return cp_parallel_simulate(count, threads, evaluate_pulse, &work, error);
 }
 

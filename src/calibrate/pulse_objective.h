@@ -30,18 +30,24 @@ CP_MUST_CHECK cp_status cp_reference_pulse_simulate(const cp_vehicle_model *mode
                                                     double time_step_s, cp_crash_result *result,
                                                     cp_error *error);
 
-/* Compare a simulated crash with a reference. Errors: CP_NO_MEMORY. */
+/* A pulse's misfits with their sign, for a search that goes by slopes: mean difference model minus
+ * reference over each of equal stretches of time, of a_x and a_y in g, then of v_x and v_y in
+ * m/s times their weight in the total error; a_y and v_y 0 unless the reference is lateral. */
+enum { CP_PULSE_STRETCHES = 30, CP_PULSE_MISFITS = 4 * CP_PULSE_STRETCHES };
+
+/* Compare a simulated crash with a reference; misfit (CP_PULSE_MISFITS values) may be NULL.
+ * Errors: CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_pulse_compare(const cp_reference_pulse *reference,
                                          const cp_crash_result *result, cp_pulse_error *found,
-                                         cp_error *error);
+                                         double *misfit, cp_error *error);
 
-/* errors[k] of pulses[0..count), simulated on threads threads; the result does not depend on
- * threads. cp_crash_library_begin must have been called. Errors: CP_BAD_INPUT for threads,
- * CP_RUN_FAILED. */
+/* errors[k] of pulses[0..count), and CP_PULSE_MISFITS of each in misfits unless that is NULL (NAN
+ * of one that failed), simulated on threads threads; the result does not depend on threads.
+ * cp_crash_library_begin must have been called. Errors: CP_BAD_INPUT for threads, CP_RUN_FAILED. */
 CP_MUST_CHECK cp_status cp_objective_pulse(const cp_vehicle_model *model,
                                            const cp_reference_pulse *pulses, size_t count,
                                            double time_step_s, int threads, cp_pulse_error *errors,
-                                           cp_error *error);
+                                           double *misfits, cp_error *error);
 
 /* Weighted mean total error over the pulses whose use[k] is true (NULL: all). One that failed
  * counts as penalty. */

@@ -183,7 +183,7 @@ cp_status cp_pulse_validate(const cp_vehicle_model *model, const cp_pulse_source
         cp_crash_library_end();
     }
     if (status == CP_OK)
-        status = cp_pulse_compare(&reference, &result, &found, error);
+        status = cp_pulse_compare(&reference, &result, &found, NULL, error);
     if (status == CP_OK && curves_path != NULL)
         status = write_curves(&reference, &result, curves_path, error);
     if (status == CP_OK)

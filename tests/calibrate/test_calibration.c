@@ -167,6 +167,42 @@ static void slopes_lead_to_the_twin(void **state)
     close_workshop(&shop);
 }
 
+// What is known of a car before the fit holds an unknown back as strongly as the fit file says.
+static void what_is_known_holds_back(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *prior_g;
+        double begin_kn; /* the twin has 110, the base another */
+        double within_kn;
+    } CASES[] = {{"0", 110.0, 2.0}, {"0.001", 110.0, 2.0}, {"900", 0.0, 1.0}};
+    for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
+        char lines[768];
+        snprintf(lines, sizeof lines,
+                 "population: 8\ngenerations: 1\nslope_evaluations: 60\nprior_g: %s\n"
+                 "local_evaluations: 0\n%s",
+                 CASES[k].prior_g, TWO_UNKNOWNS);
+        workshop shop = open_workshop(lines);
+        cp_fit fit;
+        cp_calibration calibration;
+        cp_error error = {0};
+        if (cp_fit_load(shop.fit_path, &fit, &error) != CP_OK ||
+            cp_calibration_run(&fit, &calibration, &error) != CP_OK)
+            fail_msg("%s", error.text);
+        double wanted_kn =
+            CASES[k].begin_kn > 0.0 ? CASES[k].begin_kn : fit.base.longitudinal_collapse_begin_kn;
+        assert_near(calibration.model.longitudinal_collapse_begin_kn, wanted_kn,
+                    CASES[k].within_kn);
+
+        // The objective reported is the misfit alone.
+        assert_near(calibration.objective, calibration.validation.mean_abs_error_g, 1e-9);
+        assert_int_equal(cp_calibration_write(&fit, &calibration, &error), CP_OK);
+        cp_calibration_destroy(&calibration);
+        cp_fit_destroy(&fit);
+        close_workshop(&shop);
+    }
+}
+
 // Bounds the twin's own pulse does not keep pull the fit away from it.
 static void bounds_of_the_pulse_count(void **state)
 {
@@ -236,6 +272,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_twin_is_found_again),
         cmocka_unit_test(slopes_lead_to_the_twin),
+        cmocka_unit_test(what_is_known_holds_back),
         cmocka_unit_test(bounds_of_the_pulse_count),
         cmocka_unit_test(threads_do_not_change_the_result),
         cmocka_unit_test(errors_name_line_and_field),

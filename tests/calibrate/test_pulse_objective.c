@@ -67,7 +67,7 @@ static cp_pulse_error error_of(const cp_vehicle_model *model, const cp_reference
 {
     cp_pulse_error found;
     cp_error error = {0};
-    assert_int_equal(cp_objective_pulse(model, pulse, 1, 0.0005, 1, &found, &error), CP_OK);
+    assert_int_equal(cp_objective_pulse(model, pulse, 1, 0.0005, 1, &found, NULL, &error), CP_OK);
     return found;
 }
 
@@ -117,6 +117,31 @@ static void the_total_is_the_sum_of_five(void **state)
     cp_reference_pulse_destroy(&pulse);
 }
 
+// Every stretch of every channel knows which way the model is off.
+static void misfits_have_a_sign(void **state)
+{
+    (void)state;
+    cp_vehicle_model model = cp_vehicle_model_default();
+    change add = {.ax_g = 0.7, .ay_g = -0.3, .vx_m_s = 0.05, .vy_m_s = -0.02};
+    cp_pulse_error found;
+    double misfit[CP_PULSE_MISFITS];
+    cp_error error = {0};
+    for (int longitudinal_only = 0; longitudinal_only < 2; longitudinal_only++) {
+        add.longitudinal_only = longitudinal_only == 1;
+        cp_reference_pulse pulse = reference_of(&model, 45.0, 400.0, add);
+        assert_int_equal(cp_objective_pulse(&model, &pulse, 1, 0.0005, 1, &found, misfit, &error),
+                         CP_OK);
+        for (size_t k = 0; k < CP_PULSE_STRETCHES; k++) {
+            assert_near(misfit[k], -0.7, 1e-3);
+            assert_near(misfit[CP_PULSE_STRETCHES + k], add.longitudinal_only ? 0.0 : 0.3, 1e-3);
+            assert_near(misfit[2 * CP_PULSE_STRETCHES + k], -0.5, 1e-5);
+            assert_near(misfit[3 * CP_PULSE_STRETCHES + k], add.longitudinal_only ? 0.0 : 0.2,
+                        1e-5);
+        }
+        cp_reference_pulse_destroy(&pulse);
+    }
+}
+
 static void who_does_not_stop_stops_at_the_end(void **state)
 {
     (void)state;
@@ -139,10 +164,11 @@ static void threads_do_not_change_the_errors(void **state)
         pulses[k] = reference_of(&other, 30.0 + 5.0 * k, 200.0 * k, (change){0});
     cp_pulse_error one[5], three[5];
     cp_error error = {0};
-    assert_int_equal(cp_objective_pulse(&model, pulses, 5, 0.0005, 1, one, &error), CP_OK);
-    assert_int_equal(cp_objective_pulse(&model, pulses, 5, 0.0005, 3, three, &error), CP_OK);
+    assert_int_equal(cp_objective_pulse(&model, pulses, 5, 0.0005, 1, one, NULL, &error), CP_OK);
+    assert_int_equal(cp_objective_pulse(&model, pulses, 5, 0.0005, 3, three, NULL, &error), CP_OK);
     assert_memory_equal(one, three, sizeof one);
-    assert_int_equal(cp_objective_pulse(&model, pulses, 5, 0.0005, 0, one, &error), CP_BAD_INPUT);
+    assert_int_equal(cp_objective_pulse(&model, pulses, 5, 0.0005, 0, one, NULL, &error),
+                     CP_BAD_INPUT);
     for (int k = 0; k < 5; k++)
         cp_reference_pulse_destroy(&pulses[k]);
 }
@@ -164,6 +190,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_model_has_no_error_against_itself),
         cmocka_unit_test(the_total_is_the_sum_of_five),
+        cmocka_unit_test(misfits_have_a_sign),
         cmocka_unit_test(who_does_not_stop_stops_at_the_end),
         cmocka_unit_test(threads_do_not_change_the_errors),
         cmocka_unit_test(the_mean_is_weighted_and_punishes_failures),

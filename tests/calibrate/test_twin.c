@@ -147,7 +147,7 @@ static double total_error(const cp_fit *fit, const cp_vehicle_model *model)
     assert_non_null(errors);
     cp_error error = {0};
     assert_int_equal(cp_objective_pulse(model, fit->pulses, fit->pulse_count,
-                                        fit->local_time_step_s, fit->threads, errors, &error),
+                                        fit->local_time_step_s, fit->threads, errors, NULL, &error),
                      CP_OK);
     double mean = cp_objective_pulse_mean(fit->pulses, errors, fit->pulse_count, NULL, INFINITY);
     free(errors);
@@ -279,8 +279,8 @@ static void the_study_s_twin_is_found_through_noise(void **state)
     draw_held_out(held_out, HELD_OUT);
     experiment twin = {.secrets = SECRETS,
                        .secret_count = sizeof SECRETS / sizeof *SECRETS,
-                       .budget = "seed: 96\nalgorithm: cmaes\npopulation: 20\ngenerations: 15\n"
-                                 "local_evaluations: 600\nthreads: 2\n",
+                       .budget = "seed: 96\nalgorithm: cmaes\npopulation: 20\ngenerations: 4\n"
+                                 "slope_evaluations: 250\nlocal_evaluations: 200\nthreads: 2\n",
                        .case_count = study.count,
                        .cases = study.cases,
                        .held_out_count = HELD_OUT,

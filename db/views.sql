@@ -48,18 +48,10 @@ JOIN variant AS v ON v.id = cv.variant_id;
 -- there is no vehicle. share_inside_validity: of the frontal vehicles.
 DROP VIEW IF EXISTS olc_by_variant;
 CREATE VIEW olc_by_variant AS
-WITH ordered AS (
-    SELECT variant_id, olc_g,
-           row_number() OVER (PARTITION BY variant_id ORDER BY olc_g) AS place,
-           count(*) OVER (PARTITION BY variant_id ORDER BY olc_g
-               ROWS BETWEEN UNBOUNDED PRECEDING AND UNBOUNDED FOLLOWING) AS n
+WITH counted AS (
+    SELECT variant_id, count(*) AS n
     FROM crash_vehicle
     WHERE olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')
-), median AS (
-    -- the middle one or the mean of the two in the middle; no value if either is censored
-    SELECT variant_id, CASE WHEN count(olc_g) = count(*) THEN avg(olc_g) END AS olc_median_g
-    FROM ordered
-    WHERE place IN ((n + 1) / 2, n / 2 + 1)
     GROUP BY variant_id
 ), vehicles AS (
     SELECT variant_id,
@@ -81,30 +73,32 @@ SELECT v.name AS variant, v.id AS variant_id, v.is_baseline AS is_baseline,
        coalesce(x.frontal_vehicles, 0) AS frontal_vehicles,
        coalesce(x.censored, 0) AS censored,
        coalesce(x.simulation_failed, 0) AS simulation_failed,
-       m.olc_median_g AS olc_median_g,
+       -- the middle one or the mean of the two in the middle; no value if either is censored. The
+       -- inner LIMIT lets the walk along the index end there.
+       (SELECT CASE WHEN count(olc_g) = count(*) THEN avg(olc_g) END
+        FROM (SELECT olc_g, place
+              FROM (SELECT olc_g, row_number() OVER (ORDER BY olc_g) AS place
+                    FROM crash_vehicle AS o
+                    WHERE o.variant_id = v.id
+                      AND o.olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s'))
+              WHERE place >= (k.n + 1) / 2 LIMIT 2)
+        WHERE place <= k.n / 2 + 1) AS olc_median_g,
        x.olc_mean_g AS olc_mean_g, -- of the vehicles with a value only
        x.olc_min_g AS olc_min_g, x.olc_max_g AS olc_max_g,
        coalesce(x.inside_validity, 0) AS inside_validity,
        1.0 * x.inside_validity / nullif(x.frontal_vehicles, 0) AS share_inside_validity
 FROM variant AS v
 LEFT JOIN vehicles AS x ON x.variant_id = v.id
-LEFT JOIN median AS m ON m.variant_id = v.id
+LEFT JOIN counted AS k ON k.variant_id = v.id
 ORDER BY v.number;
 
 -- The same for each scenario and variant.
 DROP VIEW IF EXISTS olc_by_scenario;
 CREATE VIEW olc_by_scenario AS
-WITH ordered AS (
-    SELECT variant_id, scenario_id, olc_g,
-           row_number() OVER (PARTITION BY variant_id, scenario_id ORDER BY olc_g) AS place,
-           count(*) OVER (PARTITION BY variant_id, scenario_id) AS n
+WITH counted AS (
+    SELECT variant_id, scenario_id, count(*) AS n
     FROM crash_vehicle
     WHERE olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')
-), median AS (
-    SELECT variant_id, scenario_id,
-           CASE WHEN count(olc_g) = count(*) THEN avg(olc_g) END AS olc_median_g
-    FROM ordered
-    WHERE place IN ((n + 1) / 2, n / 2 + 1)
     GROUP BY variant_id, scenario_id
 ), vehicles AS (
     SELECT variant_id, scenario_id,
@@ -121,12 +115,19 @@ SELECT s.name AS scenario, v.name AS variant, s.id AS scenario_id, v.id AS varia
        coalesce(x.frontal_crashes, 0) AS frontal_crashes,
        coalesce(x.frontal_vehicles, 0) AS frontal_vehicles,
        coalesce(x.censored, 0) AS censored,
-       m.olc_median_g AS olc_median_g,
+       (SELECT CASE WHEN count(olc_g) = count(*) THEN avg(olc_g) END
+        FROM (SELECT olc_g, place
+              FROM (SELECT olc_g, row_number() OVER (ORDER BY olc_g) AS place
+                    FROM crash_vehicle AS o
+                    WHERE o.variant_id = v.id AND o.scenario_id = s.id
+                      AND o.olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s'))
+              WHERE place >= (k.n + 1) / 2 LIMIT 2)
+        WHERE place <= k.n / 2 + 1) AS olc_median_g,
        coalesce(x.inside_validity, 0) AS inside_validity,
        1.0 * x.inside_validity / nullif(x.frontal_vehicles, 0) AS share_inside_validity
 FROM scenario AS s CROSS JOIN variant AS v
 LEFT JOIN vehicles AS x ON x.variant_id = v.id AND x.scenario_id = s.id
-LEFT JOIN median AS m ON m.variant_id = v.id AND m.scenario_id = s.id
+LEFT JOIN counted AS k ON k.variant_id = v.id AND k.scenario_id = s.id
 ORDER BY s.number, v.number;
 
 -- Counts of every finished replication, those without a crash included: what rates and bootstrap
@@ -321,3 +322,41 @@ JOIN replication AS r ON r.id = c.replication_id
 JOIN scenario AS s ON s.id = r.scenario_id
 GROUP BY r.scenario_id, c.crash_type
 ORDER BY s.number, c.crash_type;
+
+-- Every parameter of every function of every variant, defaults filled in; swept: 1 when the study
+-- sweeps it. base is the variant's name without the values of a sweep, so
+--   SELECT p.value AS ttc_s, o.olc_median_g FROM olc_by_variant AS o
+--   JOIN variant_parameter AS p USING (variant_id) WHERE p.base = 'aeb' AND p.parameter = 'ttc_s'
+-- is a curve over the swept parameter.
+DROP VIEW IF EXISTS variant_parameter;
+CREATE VIEW variant_parameter AS
+SELECT v.id AS variant_id, v.name AS variant,
+       coalesce((SELECT w.base FROM sweep_value AS w
+                 WHERE w.owner = 'variant' AND w.owner_id = v.id LIMIT 1), v.name) AS base,
+       f.value ->> 'function' AS function, p.key AS parameter, p.value AS value,
+       EXISTS (SELECT 1 FROM sweep_value AS w
+               WHERE w.owner = 'variant' AND w.owner_id = v.id
+                 AND w.parameter = 'variants.' || w.base || '.' || (f.value ->> 'function') || '.'
+                                   || p.key) AS swept
+FROM variant AS v, json_each(v.functions) AS f, json_each(f.value, '$.parameters') AS p
+ORDER BY v.number, f.key, p.id;
+
+-- The same of the driver errors of every scenario, and its swept options of SUMO (driver_error
+-- 'sumo_options').
+DROP VIEW IF EXISTS scenario_parameter;
+CREATE VIEW scenario_parameter AS
+SELECT s.id AS scenario_id, s.name AS scenario,
+       coalesce((SELECT w.base FROM sweep_value AS w
+                 WHERE w.owner = 'scenario' AND w.owner_id = s.id LIMIT 1), s.name) AS base,
+       e.value ->> 'model' AS driver_error, p.key AS parameter, p.value AS value,
+       EXISTS (SELECT 1 FROM sweep_value AS w
+               WHERE w.owner = 'scenario' AND w.owner_id = s.id
+                 AND w.parameter = 'scenarios.' || w.base || '.' || (e.value ->> 'model') || '.'
+                                   || p.key) AS swept
+FROM scenario AS s, json_each(s.driver_errors) AS e, json_each(e.value, '$.parameters') AS p
+UNION ALL
+SELECT s.id, s.name, w.base, 'sumo_options',
+       substr(w.parameter, length('scenarios.' || w.base || '.sumo_options.') + 1), w.value, 1
+FROM sweep_value AS w
+JOIN scenario AS s ON s.id = w.owner_id
+WHERE w.owner = 'scenario' AND instr(w.parameter, 'scenarios.' || w.base || '.sumo_options.') = 1;

@@ -1,14 +1,99 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/schema.h"
 
+#include "core/hash.h"
 #include "store/store_sqlite.h"
 
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #define APPLICATION_ID 0x43504c53 /* "CPLS" */
 
 extern const unsigned char cp_views[]; /* db/views.sql, embedded */
+
+// ---- views ---------------------------------------------------------------------------------
+
+// Which views stand in a file: a view of its own says it, the SHA-256 of db/views.sql.
+static void hash_views(char hex[CP_HASH_TEXT_SIZE])
+{
+    cp_hash_bytes(cp_views, strlen((const char *)cp_views), hex);
+}
+
+static cp_status write_views(cp_store *store, cp_error *error)
+{
+    char hex[CP_HASH_TEXT_SIZE], mark[256];
+    hash_views(hex);
+    snprintf(
+        mark, sizeof mark,
+        "DROP VIEW IF EXISTS views_written; CREATE VIEW views_written AS SELECT '%s' AS sha256",
+        hex);
+    cp_status status = cp_store_execute(store, "writing the views", (const char *)cp_views, error);
+    if (status == CP_OK)
+        status = cp_store_execute(store, "writing the views", mark, error);
+    return status;
+}
+
+// Text with every occurrence of old replaced; NULL when memory is gone.
+static char *replace(const char *text, const char *old, const char *replacement)
+{
+    size_t places = 0;
+    for (const char *at = strstr(text, old); at != NULL; at = strstr(at + 1, old))
+        places++;
+    char *result = malloc(strlen(text) + places * strlen(replacement) + 1), *to = result;
+    if (result == NULL)
+        return NULL;
+    for (const char *at = strstr(text, old); at != NULL; at = strstr(text, old)) {
+        memcpy(to, text, (size_t)(at - text));
+        to = stpcpy(to + (at - text), replacement);
+        text = at + strlen(old);
+    }
+    strcpy(to, text);
+    return result;
+}
+
+// Temporary views come before those of the file and leave it alone.
+static cp_status hide_views(cp_store *store, cp_error *error)
+{
+    char *dropping =
+        replace((const char *)cp_views, "DROP VIEW IF EXISTS ", "DROP VIEW IF EXISTS temp.");
+    char *text = dropping != NULL ? replace(dropping, "CREATE VIEW ", "CREATE TEMP VIEW ") : NULL;
+    cp_status status = text != NULL ? cp_store_execute(store, "making the views", text, error)
+                                    : cp_fail_memory(error, "views");
+    free(text);
+    free(dropping);
+    return status;
+}
+
+static cp_status rewrite_views(cp_store *store, cp_error *error)
+{
+    cp_status status = cp_store_begin(store, error);
+    if (status != CP_OK)
+        return status;
+    status = write_views(store, error);
+    if (status == CP_OK)
+        status = cp_store_commit(store, error);
+    if (status != CP_OK)
+        cp_store_rollback(store);
+    return status;
+}
+
+cp_status cp_schema_refresh_views(cp_store *store, bool writable, cp_error *error)
+{
+    char hex[CP_HASH_TEXT_SIZE], sql[256];
+    int64_t same = 0;
+    hash_views(hex);
+    snprintf(
+        sql, sizeof sql,
+        "SELECT count(*) FROM sqlite_schema WHERE type = 'view' AND name = 'views_written' AND "
+        "instr(sql, '%s') > 0",
+        hex);
+    cp_status status = cp_store_integer(store, "reading the views", sql, &same, error);
+    if (status != CP_OK || same)
+        return status;
+    return writable ? rewrite_views(store, error) : hide_views(store, error);
+}
 
 // ---- migration -----------------------------------------------------------------------------
 
@@ -45,7 +130,7 @@ static cp_status migrate_locked(cp_store *store, cp_error *error)
         status = cp_store_execute(store, what, (const char *)CP_SCHEMA[k], error);
     }
     if (status == CP_OK)
-        status = cp_store_execute(store, "writing the views", (const char *)cp_views, error);
+        status = write_views(store, error);
     if (status == CP_OK && version > 0)
         status = check_references(store, error);
     snprintf(stamp, sizeof stamp, "PRAGMA application_id=%d; PRAGMA user_version=%d",

@@ -4,6 +4,8 @@
 
 #include "store/store.h"
 
+#include <stdbool.h>
+
 /* Versions of the schema; for the files of this folder only. Version N is what the first N files of
  * db/schema make, run one after the other; PRAGMA user_version tells it. A file is never changed
  * once databases were written with it: what is to be different goes into the next one. */
@@ -15,6 +17,11 @@ extern const unsigned char *const CP_SCHEMA[];
  * one transaction or not at all. Every reference between tables is checked before the commit.
  * Errors: CP_STORE_FAILED, CP_BUSY. */
 CP_MUST_CHECK cp_status cp_schema_migrate(cp_store *store, cp_error *error);
+
+/* See to it that queries find the views of this program, whatever program wrote those in the file:
+ * they are written anew when writable, else hidden by temporary ones. Does nothing when they are the
+ * same. Views of the user stay. Errors: CP_STORE_FAILED, CP_BUSY, CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_schema_refresh_views(cp_store *store, bool writable, cp_error *error);
 
 /* Whose file it is and how old. version is 0 for an empty file. Errors: CP_BAD_INPUT for no
  * database, another program's, or one of a newer crashpulse. */

@@ -262,6 +262,8 @@ static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *erro
         status = cp_store_execute(store, "setting it up",
                                   "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL", error);
     if (status == CP_OK)
+        status = cp_schema_refresh_views(store, mode != CP_STORE_READ, error);
+    if (status == CP_OK)
         status = cp_store_execute(store, "setting it up", "PRAGMA foreign_keys=ON", error);
 
     // A creation that failed leaves nothing behind.

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How the database grows: 10^4, 10^5, 10^6 crashes in it, their pulses those of distinct surrogate
  * runs with noise of the sensor's resolution on each; bytes and time a crash, and the time of the
- * queries everybody asks. Usage: bench_volume DATABASE EXTENSION [CRASHES [RUNS]]. */
+ * queries everybody asks. Usage: bench_volume DATABASE EXTENSION [CRASHES [RUNS [TABLE.md]]]. */
 #include "builders/crash_builder.h"
 #include "core/progress.h"
 #include "core/rng.h"
@@ -16,6 +16,7 @@
 #include <pthread.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 
 enum { SCENARIOS = 2, VARIANTS = 3, CRASHES_A_REPLICATION = 100, THREADS = 4 };
 static const char CAR[] = "vehicle: car\nparameters: []\n";
@@ -92,8 +93,8 @@ typedef struct volume {
     const run *runs;
     size_t run_count;
     cp_plan_rows plan;
-    size_t crashes; /* so far */
-    double commit_s;
+    size_t crashes;  /* so far */
+    double commit_s; /* since the last measurement */
     double pack_s;
 } volume;
 
@@ -255,19 +256,34 @@ static cp_status count_row(void *context, const cp_row *row, cp_error *error)
     return CP_OK;
 }
 
-// The better of two, as a warm cache gives it.
-static double seconds_of(cp_store *store, const char *sql)
+// Processor time and time on the wall: on an idle machine they are the same, as one thread answers
+// and nothing is read from the disk.
+typedef struct taken {
+    double cpu_s;
+    double wall_s;
+} taken;
+
+static double cpu_now_s(void)
 {
-    double best_s = INFINITY;
-    for (int repeat = 0; repeat < 2; repeat++) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// The best of three, as a warm cache gives it.
+static taken time_of(cp_store *store, const char *sql)
+{
+    taken best = {INFINITY, INFINITY};
+    for (int repeat = 0; repeat < 3; repeat++) {
         cp_error error = {0};
         size_t rows = 0;
         cp_query_handler handler = {.row = count_row, .context = &rows};
-        double started_s = cp_clock_s();
+        double wall_s = cp_clock_s(), cpu_s = cpu_now_s();
         check(cp_query(store, sql, NULL, 0, &handler, &error), &error);
-        best_s = fmin(best_s, cp_clock_s() - started_s);
+        best.cpu_s = fmin(best.cpu_s, cpu_now_s() - cpu_s);
+        best.wall_s = fmin(best.wall_s, cp_clock_s() - wall_s);
     }
-    return best_s;
+    return best;
 }
 
 static const struct {
@@ -275,6 +291,7 @@ static const struct {
     const char *sql;
     double bar_s; /* at 10^6 crashes; NAN: none */
 } QUERY[] = {
+    {"one scan of crash_vehicle", "SELECT sum(olc_g) FROM crash_vehicle NOT INDEXED", NAN},
     {"counts and means by variant",
      "SELECT variant_id, count(*), avg(olc_g) FROM crash_vehicle WHERE olc_status IN ('value', "
      "'no_deceleration', 'beyond_0_5_s') GROUP BY variant_id",
@@ -294,7 +311,18 @@ static const struct {
      NAN},
     {"pulse_samples of one crash", "SELECT * FROM pulse_samples((SELECT max(id) FROM crash), 'a')",
      NAN},
+    {"whether the file is damaged (quick_check)", "PRAGMA quick_check(1)", NAN},
 };
+enum { QUERIES = sizeof QUERY / sizeof *QUERY, SIZES = 3 };
+
+// What was seen at one size.
+typedef struct measurement {
+    size_t crashes;
+    double file_mb;
+    double commits_per_s; /* crashes a second, since the size before */
+    double packs_per_s;
+    taken query[QUERIES];
+} measurement;
 
 static double megabytes(const char *path)
 {
@@ -302,36 +330,112 @@ static double megabytes(const char *path)
     return stat(path, &entry) == 0 ? (double)entry.st_size / 1e6 : 0.0;
 }
 
-static bool measure(const char *path, const char *extension, const volume *v)
+static void measure(const char *path, const char *extension, volume *v, size_t before,
+                    measurement *m)
 {
     cp_error error = {0};
     cp_store *store = NULL;
-    bool good = true;
+    double added = (double)(v->crashes - before);
     // Closing the last connection has put the log into the file.
     check(cp_store_open(path, CP_STORE_READ, &store, &error), &error);
     check(cp_store_load_extension(store, extension, &error), &error);
-    double size_mb = megabytes(path), plain_s = seconds_of(store, "SELECT sum(olc_g) FROM "
-                                                                  "crash_vehicle NOT INDEXED");
-    printf("%zu crashes: %.0f MB, %.0f bytes a crash; so far %.0f crashes/s into the database, "
-           "%.0f crashes/s of noise and packing; one scan of crash_vehicle %.3f s\n",
-           v->crashes, size_mb, 1e6 * size_mb / (double)v->crashes,
-           (double)v->crashes / v->commit_s, (double)v->crashes / v->pack_s, plain_s);
-    bool full = v->crashes == 1000000;
-    for (size_t k = 0; k < sizeof QUERY / sizeof *QUERY; k++) {
-        double took_s = seconds_of(store, QUERY[k].sql);
-        printf("  %-40s %8.3f s  %6.2f scans", QUERY[k].what, took_s, took_s / plain_s);
-        if (full && !isnan(QUERY[k].bar_s)) {
-            printf("  bar %.1f s: %s", QUERY[k].bar_s, took_s < QUERY[k].bar_s ? "kept" : "MISSED");
-            good = good && took_s < QUERY[k].bar_s;
-        }
-        printf("\n");
-    }
-    if (full) {
-        printf("  file, bar 2500 MB: %s\n", size_mb < 2500 ? "kept" : "MISSED");
-        good = good && size_mb < 2500;
-    }
-    fflush(stdout);
+    *m = (measurement){.crashes = v->crashes,
+                       .file_mb = megabytes(path),
+                       .commits_per_s = added / v->commit_s,
+                       .packs_per_s = added / v->pack_s};
+    v->commit_s = v->pack_s = 0.0;
+    for (size_t k = 0; k < QUERIES; k++)
+        m->query[k] = time_of(store, QUERY[k].sql);
     cp_store_close(store);
+}
+
+// ---- the table -----------------------------------------------------------------------------
+
+static const double BAR_MB = 2500.0;
+
+static void print_line(FILE *file, const char *what, const measurement *m, size_t count,
+                       double (*value)(const measurement *), const char *format)
+{
+    fprintf(file, "| %s |", what);
+    for (size_t k = 0; k < count; k++) {
+        fputc(' ', file);
+        fprintf(file, format, value(&m[k]));
+        fputs(" |", file);
+    }
+}
+
+static double crashes_of(const measurement *m)
+{
+    return (double)m->crashes;
+}
+
+static double megabytes_of(const measurement *m)
+{
+    return m->file_mb;
+}
+
+static double bytes_of(const measurement *m)
+{
+    return 1e6 * m->file_mb / (double)m->crashes;
+}
+
+static double commits_of(const measurement *m)
+{
+    return m->commits_per_s;
+}
+
+static double packs_of(const measurement *m)
+{
+    return m->packs_per_s;
+}
+
+// A bar holds at a million crashes; whether it was kept.
+static bool print_bar(FILE *file, const measurement *last, double value, double bar,
+                      const char *unit)
+{
+    if (isnan(bar)) {
+        fputs(" |\n", file);
+        return true;
+    }
+    bool full = last->crashes >= 1000000;
+    fprintf(file, " %g %s: %s |\n", bar, unit,
+            !full         ? "not reached"
+            : value < bar ? "kept"
+                          : "MISSED");
+    return !full || value < bar;
+}
+
+static bool print_table(FILE *file, const measurement *m, size_t count, size_t runs)
+{
+    const measurement *last = &m[count - 1];
+    bool good = true;
+    fprintf(file,
+            "# How the database grows\n\n"
+            "Made by `cmake --build build --target bench_volume_million`: crashes whose pulses are "
+            "those of %zu distinct\nsurrogate runs, with noise of the sensor's resolution on each, "
+            "in replications of %d crashes. Queries:\nprocessor time, in brackets on the wall, the "
+            "best of three; bars are for processor time at 10^6\ncrashes.\n\n",
+            runs, CRASHES_A_REPLICATION);
+    print_line(file, "crashes", m, count, crashes_of, "%.0f");
+    fputs(" bar |\n|---|", file);
+    for (size_t k = 0; k < count; k++)
+        fputs("---:|", file);
+    fputs("---|\n", file);
+    print_line(file, "file, MB", m, count, megabytes_of, "%.0f");
+    good &= print_bar(file, last, last->file_mb, BAR_MB, "MB");
+    print_line(file, "bytes a crash", m, count, bytes_of, "%.0f");
+    print_bar(file, last, 0, NAN, "");
+    print_line(file, "crashes/s into the database, one writer", m, count, commits_of, "%.0f");
+    print_bar(file, last, 0, NAN, "");
+    print_line(file, "crashes/s packed, all processors", m, count, packs_of, "%.0f");
+    print_bar(file, last, 0, NAN, "");
+    for (size_t k = 0; k < QUERIES; k++) {
+        fprintf(file, "| %s, s |", QUERY[k].what);
+        for (size_t size = 0; size < count; size++)
+            fprintf(file, " %.3f (%.3f) |", m[size].query[k].cpu_s, m[size].query[k].wall_s);
+        good &= print_bar(file, last, last->query[k].cpu_s, QUERY[k].bar_s, "s");
+    }
+    fflush(file);
     return good;
 }
 
@@ -339,9 +443,10 @@ int main(int argc, char **argv)
 {
     cp_error error = {0};
     if (argc < 3) {
-        fprintf(stderr, "usage: bench_volume DATABASE EXTENSION [CRASHES [RUNS]]\n");
+        fprintf(stderr, "usage: bench_volume DATABASE EXTENSION [CRASHES [RUNS [TABLE.md]]]\n");
         return 2;
     }
+    setvbuf(stdout, NULL, _IOLBF, 0);
     size_t crashes = argc > 3 ? strtoull(argv[3], NULL, 10) : 1000000;
     volume v = {.run_count = argc > 4 ? strtoull(argv[4], NULL, 10) : 10000};
     cp_vehicle_model car = cp_vehicle_model_default();
@@ -351,7 +456,6 @@ int main(int argc, char **argv)
     for (size_t k = 0; k < v.run_count; k++)
         make_run(&car, k, &runs[k]);
     printf("%zu surrogate runs in %.0f s\n", v.run_count, cp_clock_s() - started_s);
-    fflush(stdout);
     v.runs = runs;
 
     cp_scenario_row scenario[SCENARIOS];
@@ -361,14 +465,23 @@ int main(int argc, char **argv)
     cp_store *store = NULL;
     check(cp_store_open(argv[1], CP_STORE_CREATE, &store, &error), &error);
     check(cp_plan_rows_write(store, &v.plan, &error), &error);
+    measurement seen[SIZES];
+    size_t sizes = 0, before = 0;
     bool good = true;
-    for (size_t next = crashes < 10000 ? crashes : 10000; v.crashes < crashes; next *= 10) {
+    for (size_t next = crashes < 10000 ? crashes : 10000; v.crashes < crashes && sizes < SIZES;
+         next *= 10) {
         while (v.crashes < next && v.crashes < crashes)
             add_replication(store, &v);
         cp_store_close(store);
-        good = measure(argv[1], argv[2], &v);
+        measure(argv[1], argv[2], &v, before, &seen[sizes++]);
+        before = v.crashes;
+        good = print_table(stdout, seen, sizes, v.run_count);
         check(cp_store_open(argv[1], CP_STORE_WRITE, &store, &error), &error);
     }
+    FILE *table = argc > 5 ? fopen(argv[5], "w") : NULL;
+    if (argc > 5 &&
+        (table == NULL || (print_table(table, seen, sizes, v.run_count), fclose(table) != 0)))
+        crash_builder_stop(&(cp_error){.text = "the table cannot be written"});
     cp_store_close(store);
     for (size_t k = 0; k < v.run_count; k++)
         for (int role = 0; role < 2; role++)

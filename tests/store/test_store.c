@@ -114,6 +114,43 @@ static void rollback_leaves_nothing(void **state)
     cp_store_close(store);
 }
 
+// A view that another program wrote under one of our names, and one of the user's own.
+static void views_are_those_of_this_program(void **state)
+{
+    const fixture *f = *state;
+    small_plan plan;
+    cp_error error = {0};
+    char *before = NULL, *after = NULL;
+    size_t size = 0, size_after = 0;
+    cp_store_close(open_planned(f, &plan));
+    shell(f,
+          "DROP VIEW views_written; DROP VIEW olc_by_variant; DROP VIEW progress; CREATE VIEW "
+          "olc_by_variant AS SELECT 4711 AS crashes; CREATE VIEW mine AS SELECT 1 AS one; PRAGMA "
+          "journal_mode=DELETE");
+
+    // Who reads sees ours; the file is not touched.
+    cp_store *store = NULL;
+    assert_ok(cp_file_read(f->db, &before, &size, &error), &error);
+    assert_ok(cp_store_open(f->db, CP_STORE_READ, &store, &error), &error);
+    assert_true(number_of(store, "SELECT sum(crashes) FROM olc_by_variant") == 0);
+    assert_true(number_of(store, "SELECT sum(planned) FROM progress") == 4);
+    cp_store_close(store);
+    assert_ok(cp_file_read(f->db, &after, &size_after, &error), &error);
+    assert_int_equal(size, size_after);
+    assert_memory_equal(before, after, size);
+    free(before);
+    free(after);
+
+    // Who writes brings them up to date for everyone; the user's stay.
+    assert_ok(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), &error);
+    cp_store_close(store);
+    assert_ok(cp_store_open(f->db, CP_STORE_READ, &store, &error), &error);
+    assert_true(number_of(store, "SELECT one FROM mine") == 1);
+    assert_true(number_of(store, "SELECT count(*) FROM temp.sqlite_schema") == 0);
+    assert_true(number_of(store, "SELECT sum(crashes) FROM main.olc_by_variant") == 0);
+    cp_store_close(store);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -126,6 +163,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(refuses_a_newer_schema, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(plain_sqlite_answers, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(rollback_leaves_nothing, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(views_are_those_of_this_program, fixture_begin,
+                                        fixture_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

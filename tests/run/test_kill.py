@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""SIGKILL at random, workers and runner, while a study runs: what the resumed study ends with is, row
-by row, what an undisturbed one has. The whole of it: `cmake --build build --target kill_200`."""
+"""SIGKILL at random, workers and runner, all in one study: what the resumed study ends with is, row by
+row, what an undisturbed one has. The whole of it: `cmake --build build --target kill_200`."""
 import argparse
+import os
 import pathlib
 import random
 import signal
@@ -35,64 +36,80 @@ def workers_of(pid):
 def kill(pid):
     try:
         pathlib.Path(f"/proc/{pid}/stat").read_text()
-        subprocess.os.kill(pid, signal.SIGKILL)
+        os.kill(pid, signal.SIGKILL)
         return True
     except (OSError, ProcessLookupError):
         return False
 
 
+def done_in(db):
+    """Replications done so far; 0 while there is no database yet."""
+    try:
+        connection = sqlite3.connect(f"file:{db}?mode=ro", uri=True, timeout=60)
+        try:
+            return connection.execute("SELECT count(*) FROM replication WHERE status = 'done'"
+                                      ).fetchone()[0]
+        finally:
+            connection.close()
+    except sqlite3.OperationalError:
+        return 0
+
+
 def disturb(study, db, generator, kills, pause_s):
-    """Run the study to its end, killing on the way; how many kills of each kind were done."""
+    """Run the study to its end with kills spread over all of it: as many a finished replication as
+    make the number by the last. How many of each kind were done, and restarts."""
     words = [arguments.crashpulse, "run", str(study), "--db", str(db), "--jobs", "2"]
+    total = 2 * arguments.replications
     done = {"worker": 0, "runner": 0}
-    runner = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    restarts = 0
+
+    def start():
+        return subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    runner = start()
     while sum(done.values()) < kills:
-        time.sleep(generator.uniform(0.0, pause_s))
+        # At a random moment; soon, when the study is ahead of the kills or near its end.
+        finished = done_in(db)
+        behind = kills * (finished + 2) / total - sum(done.values())
+        hurry = behind >= 3 or finished >= total - 3
+        time.sleep(generator.uniform(0.0, pause_s / 10 if hurry else pause_s / 2))
         if runner.poll() is not None:
-            # It has ended by itself: complete, or with the failures that killed workers are.
-            if runner.returncode == 0:
-                break
-            runner = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            continue
-        workers = workers_of(runner.pid)
-        if workers and generator.random() < 0.6:
-            done["worker"] += kill(generator.choice(workers))
-        else:
-            runner.kill()
-            runner.wait()
-            done["runner"] += 1
-            runner = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            # It has ended by itself, with the failures that killed workers are.
+            assert runner.returncode == 1, ("the study ended before the kills", done)
+            runner = start()
+            restarts += 1
+        elif behind > 0:
+            workers = workers_of(runner.pid)
+            if workers and generator.random() < 0.6:
+                done["worker"] += kill(generator.choice(workers))
+            else:
+                runner.kill()
+                runner.wait()
+                done["runner"] += 1
+                restarts += 1
+                runner = start()
     # Left in peace: failures of the past are tried again, at the latest by the second run.
     runner.wait()
     crossing_study.run(arguments.crashpulse, *words[1:], expect=None)
     crossing_study.run(arguments.crashpulse, *words[1:])
-    return done
+    return done, restarts
 
 
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     study = crossing_study.write(folder, arguments.network, arguments.replications,
                                  arguments.duration)
-    undisturbed = folder / "undisturbed.db"
+    undisturbed, disturbed = folder / "undisturbed.db", folder / "disturbed.db"
     started_s = time.monotonic()
     crossing_study.run(arguments.crashpulse, "run", study, "--db", undisturbed)
-    # So that kills fall into replications as well as between and before them.
-    pause_s = 2.0 * (time.monotonic() - started_s) / arguments.replications
-    generator = random.Random(20)
-    total = {"worker": 0, "runner": 0}
-    studies = 0
-    while sum(total.values()) < arguments.kills:
-        db = folder / f"disturbed_{studies}.db"
-        done = disturb(study, db, generator, arguments.kills - sum(total.values()),
-                       pause_s)
-        total = {kind: total[kind] + done[kind] for kind in total}
-        studies += 1
-        crossing_study.assert_same(db, undisturbed)
-        crossing_study.run(arguments.crashpulse, "check", db)
-        outcomes = dict(sqlite3.connect(db).execute(
-            "SELECT outcome, count(*) FROM attempt GROUP BY outcome").fetchall())
-        assert "running" not in outcomes and outcomes["done"] == 2 * arguments.replications, outcomes
-        print(f"study {studies}: {done['worker']} workers and {done['runner']} runners killed; "
-              f"attempts: {outcomes}", flush=True)
-    print(f"{total['worker']} workers and {total['runner']} runners killed in {studies} studies of "
-          f"{2 * arguments.replications} replications: the rows of an undisturbed run each time")
+    # About a replication, so that kills fall into them as well as between and before them.
+    pause_s = (time.monotonic() - started_s) / arguments.replications
+    done, restarts = disturb(study, disturbed, random.Random(20), arguments.kills, pause_s)
+    crossing_study.assert_same(disturbed, undisturbed)
+    crossing_study.run(arguments.crashpulse, "check", disturbed)
+    outcomes = dict(sqlite3.connect(disturbed).execute(
+        "SELECT outcome, count(*) FROM attempt GROUP BY outcome").fetchall())
+    assert "running" not in outcomes and outcomes["done"] == 2 * arguments.replications, outcomes
+    print(f"one study of {2 * arguments.replications} replications: {done['worker']} workers and "
+          f"{done['runner']} runners killed, {restarts} restarts; attempts: {outcomes}; the rows of an "
+          f"undisturbed run")

@@ -14,6 +14,7 @@ typedef struct command {
 
 static const command COMMAND[] = {
     {"run", cmd_run, "simulate a study: traffic, crashes, pulses, into a database"},
+    {"plan", cmd_plan, "show what a study would run"},
     {"background", cmd_background, "what contacts a network makes without driver errors"},
     {"status", cmd_status, "how far a study has come"},
     {"merge", cmd_merge, "put databases of one study together"},

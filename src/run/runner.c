@@ -134,11 +134,14 @@ static cp_status probe_scenario(runner *run, const cp_study_scenario *scenario, 
                    end.reason);
 }
 
+// Of the values of a sweep one is enough, unless SUMO is started otherwise for each.
 static cp_status probe_scenarios(runner *run, cp_error *error)
 {
+    const cp_study_scenario *scenarios = run->study.scenarios;
     cp_status status = CP_OK;
     for (size_t k = 0; status == CP_OK && k < run->study.scenario_count; k++)
-        status = probe_scenario(run, &run->study.scenarios[k], error);
+        if (k == 0 || !cp_study_scenarios_start_alike(&scenarios[k - 1], &scenarios[k]))
+            status = probe_scenario(run, &scenarios[k], error);
     return status;
 }
 

@@ -5,27 +5,28 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 int64_t cp_replication_row_id(const char *scenario, const char *variant, const char *sweep,
                               uint64_t seed)
 {
-    char key[1024];
+    char key[4096];
     snprintf(key, sizeof key, "%s|%s|%s|%" PRIu64, scenario, variant, sweep, seed);
     return cp_hash_row_id(key);
 }
 
-// ---- what the tables held before, and the plan, side by side -------------------------------
+// ---- the plan beside what the database holds -----------------------------------------------
 
-// Copies of the present rows, to name a difference, and a place for the plan's replications.
+// The plan in temporary tables made like those it is for; a read-only database has them too.
 static const char PREPARE[] =
-    "DROP TABLE IF EXISTS temp.old_study; DROP TABLE IF EXISTS temp.old_scenario;"
-    "DROP TABLE IF EXISTS temp.old_variant; DROP TABLE IF EXISTS temp.old_vehicle_model;"
-    "DROP TABLE IF EXISTS temp.plan; DROP TABLE IF EXISTS temp.planned_variant;"
-    "CREATE TEMP TABLE planned_variant (id INTEGER PRIMARY KEY);"
-    "CREATE TEMP TABLE old_study AS SELECT * FROM study;"
-    "CREATE TEMP TABLE old_scenario AS SELECT * FROM scenario;"
-    "CREATE TEMP TABLE old_variant AS SELECT * FROM variant;"
-    "CREATE TEMP TABLE old_vehicle_model AS SELECT * FROM vehicle_model;"
+    "DROP TABLE IF EXISTS temp.planned_study; DROP TABLE IF EXISTS temp.planned_scenario;"
+    "DROP TABLE IF EXISTS temp.planned_variant; DROP TABLE IF EXISTS temp.planned_vehicle_model;"
+    "DROP TABLE IF EXISTS temp.planned_sweep_value; DROP TABLE IF EXISTS temp.plan;"
+    "CREATE TEMP TABLE planned_study AS SELECT * FROM study WHERE false;"
+    "CREATE TEMP TABLE planned_scenario AS SELECT * FROM scenario WHERE false;"
+    "CREATE TEMP TABLE planned_variant AS SELECT * FROM variant WHERE false;"
+    "CREATE TEMP TABLE planned_vehicle_model AS SELECT * FROM vehicle_model WHERE false;"
+    "CREATE TEMP TABLE planned_sweep_value AS SELECT * FROM sweep_value WHERE false;"
     "CREATE TEMP TABLE plan (id INTEGER PRIMARY KEY, scenario_id, variant_id, number, seed, hash)";
 
 // Replications with results, or being run, that the plan contradicts.
@@ -36,29 +37,31 @@ static const char CONTRADICTION[] =
     "WHERE r.status IN ('done', 'running') AND (p.id IS NULL OR p.hash <> r.configuration_hash) "
     "ORDER BY s.number, v.number, r.number LIMIT 1";
 
-// First difference between the old rows and the plan that concerns scenario ?1 and variant ?2.
+// First difference between the rows and the plan that concerns scenario ?1 and variant ?2.
 static const char DIFFERENCE[] =
     "WITH d (what, was, is_now) AS ("
-    "SELECT 'seed', o.seed, n.seed FROM temp.old_study AS o, study AS n UNION ALL "
-    "SELECT 'design', o.design, n.design FROM temp.old_study AS o, study AS n UNION ALL "
-    "SELECT 'duration_s', o.duration_s, n.duration_s FROM temp.old_study AS o, study AS n UNION "
-    "ALL "
-    "SELECT 'warmup_s', o.warmup_s, n.warmup_s FROM temp.old_study AS o, study AS n UNION ALL "
+    "SELECT 'seed', o.seed, n.seed FROM study AS o, temp.planned_study AS n UNION ALL "
+    "SELECT 'design', o.design, n.design FROM study AS o, temp.planned_study AS n UNION ALL "
+    "SELECT 'duration_s', o.duration_s, n.duration_s "
+    "FROM study AS o, temp.planned_study AS n UNION ALL "
+    "SELECT 'warmup_s', o.warmup_s, n.warmup_s "
+    "FROM study AS o, temp.planned_study AS n UNION ALL "
     "SELECT 'step_length_s', o.step_length_s, n.step_length_s "
-    "FROM temp.old_study AS o, study AS n UNION ALL "
-    "SELECT 'vehicles', o.vehicles, n.vehicles FROM temp.old_study AS o, study AS n UNION ALL "
+    "FROM study AS o, temp.planned_study AS n UNION ALL "
+    "SELECT 'vehicles', o.vehicles, n.vehicles "
+    "FROM study AS o, temp.planned_study AS n UNION ALL "
     "SELECT 'vehicle model ' || n.name, o.hash, n.hash "
-    "FROM temp.old_vehicle_model AS o JOIN vehicle_model AS n USING (name) UNION ALL "
+    "FROM vehicle_model AS o JOIN temp.planned_vehicle_model AS n USING (name) UNION ALL "
     "SELECT 'scenario ' || n.name || ': sumocfg', o.sumocfg, n.sumocfg "
-    "FROM temp.old_scenario AS o JOIN scenario AS n USING (id) WHERE id = ?1 UNION ALL "
+    "FROM scenario AS o JOIN temp.planned_scenario AS n USING (id) WHERE id = ?1 UNION ALL "
     "SELECT 'scenario ' || n.name || ': sumo_options', o.sumo_options, n.sumo_options "
-    "FROM temp.old_scenario AS o JOIN scenario AS n USING (id) WHERE id = ?1 UNION ALL "
+    "FROM scenario AS o JOIN temp.planned_scenario AS n USING (id) WHERE id = ?1 UNION ALL "
     "SELECT 'scenario ' || n.name || ': driver_errors', o.driver_errors, n.driver_errors "
-    "FROM temp.old_scenario AS o JOIN scenario AS n USING (id) WHERE id = ?1 UNION ALL "
+    "FROM scenario AS o JOIN temp.planned_scenario AS n USING (id) WHERE id = ?1 UNION ALL "
     "SELECT 'scenario ' || n.name || ': files (SHA-256)', o.files, n.files "
-    "FROM temp.old_scenario AS o JOIN scenario AS n USING (id) WHERE id = ?1 UNION ALL "
+    "FROM scenario AS o JOIN temp.planned_scenario AS n USING (id) WHERE id = ?1 UNION ALL "
     "SELECT 'variant ' || n.name || ': functions', o.functions, n.functions "
-    "FROM temp.old_variant AS o JOIN variant AS n USING (id) WHERE id = ?2) "
+    "FROM variant AS o JOIN temp.planned_variant AS n USING (id) WHERE id = ?2) "
     "SELECT what, was, is_now FROM d WHERE was IS NOT is_now LIMIT 1";
 
 static cp_status execute(cp_store *store, const char *sql, cp_error *error)
@@ -79,13 +82,11 @@ static const char *column_text(const cp_statement *statement, int column)
 static cp_status write_study(cp_store *store, const cp_study_row *row, cp_error *error)
 {
     cp_statement s;
-    cp_status status = cp_statement_prepare(
-        store, "planning the study",
-        "INSERT INTO study VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12) "
-        "ON CONFLICT (id) DO UPDATE SET question = ?3, design = ?4, seed = ?5, "
-        "replications = ?6, duration_s = ?7, warmup_s = ?8, step_length_s = ?9, vehicles = ?10, "
-        "yaml = ?11, hash = ?12",
-        &s, error);
+    cp_status status =
+        cp_statement_prepare(store, "planning the study",
+                             "INSERT INTO temp.planned_study "
+                             "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)",
+                             &s, error);
     if (status != CP_OK)
         return status;
     cp_bind_integer(&s, 1, cp_hash_row_id(row->name));
@@ -110,9 +111,7 @@ static cp_status write_scenarios(cp_store *store, const cp_plan_rows *rows, cp_e
     cp_statement s;
     cp_status status = cp_statement_prepare(
         store, "planning a scenario",
-        "INSERT INTO scenario VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT (id) DO UPDATE SET "
-        "number = ?3, sumocfg = ?4, sumo_options = ?5, files = ?6, driver_errors = ?7",
-        &s, error);
+        "INSERT INTO temp.planned_scenario VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)", &s, error);
     for (size_t k = 0; status == CP_OK && k < rows->scenario_count; k++) {
         const cp_scenario_row *row = &rows->scenario[k];
         cp_bind_integer(&s, 1, cp_hash_row_id(row->name));
@@ -130,16 +129,10 @@ static cp_status write_scenarios(cp_store *store, const cp_plan_rows *rows, cp_e
 
 static cp_status write_variants(cp_store *store, const cp_plan_rows *rows, cp_error *error)
 {
-    cp_statement s, planned = {0};
+    cp_statement s;
     cp_status status = cp_statement_prepare(
-        store, "planning a variant",
-        "INSERT INTO variant VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (id) DO UPDATE SET "
-        "number = ?3, is_baseline = ?4, functions = ?5",
+        store, "planning a variant", "INSERT INTO temp.planned_variant VALUES (?1, ?2, ?3, ?4, ?5)",
         &s, error);
-    if (status == CP_OK)
-        status =
-            cp_statement_prepare(store, "planning a variant",
-                                 "INSERT INTO temp.planned_variant VALUES (?1)", &planned, error);
     for (size_t k = 0; status == CP_OK && k < rows->variant_count; k++) {
         const cp_variant_row *row = &rows->variant[k];
         cp_bind_integer(&s, 1, cp_hash_row_id(row->name));
@@ -148,11 +141,28 @@ static cp_status write_variants(cp_store *store, const cp_plan_rows *rows, cp_er
         cp_bind_integer(&s, 4, row->is_baseline);
         cp_bind_text(&s, 5, row->functions);
         status = cp_statement_run(&s, error);
-        cp_bind_integer(&planned, 1, cp_hash_row_id(row->name));
-        if (status == CP_OK)
-            status = cp_statement_run(&planned, error);
     }
-    cp_statement_finish(&planned);
+    cp_statement_finish(&s);
+    return status;
+}
+
+static cp_status write_sweeps(cp_store *store, const cp_plan_rows *rows, cp_error *error)
+{
+    cp_statement s;
+    cp_status status = cp_statement_prepare(
+        store, "planning a sweep",
+        "INSERT INTO temp.planned_sweep_value VALUES (?1, ?2, ?3, ?4, ?5)", &s, error);
+    for (size_t k = 0; status == CP_OK && k < rows->sweep_count; k++) {
+        const cp_sweep_row *row = &rows->sweep[k];
+        const char *owner =
+            row->of_scenario ? rows->scenario[row->owner].name : rows->variant[row->owner].name;
+        cp_bind_text(&s, 1, row->of_scenario ? "scenario" : "variant");
+        cp_bind_integer(&s, 2, cp_hash_row_id(owner));
+        cp_bind_text(&s, 3, row->base);
+        cp_bind_text(&s, 4, row->parameter);
+        cp_bind_real(&s, 5, row->value);
+        status = cp_statement_run(&s, error);
+    }
     cp_statement_finish(&s);
     return status;
 }
@@ -160,10 +170,9 @@ static cp_status write_variants(cp_store *store, const cp_plan_rows *rows, cp_er
 static cp_status write_vehicle_models(cp_store *store, const cp_plan_rows *rows, cp_error *error)
 {
     cp_statement s;
-    cp_status status = cp_statement_prepare(store, "planning a vehicle model",
-                                            "INSERT INTO vehicle_model VALUES (?1, ?2, ?3) "
-                                            "ON CONFLICT (name) DO UPDATE SET hash = ?2, yaml = ?3",
-                                            &s, error);
+    cp_status status = cp_statement_prepare(
+        store, "planning a vehicle model",
+        "INSERT INTO temp.planned_vehicle_model VALUES (?1, ?2, ?3)", &s, error);
     for (size_t k = 0; status == CP_OK && k < rows->vehicle_model_count; k++) {
         const cp_vehicle_model_row *row = &rows->vehicle_model[k];
         cp_bind_text(&s, 1, row->name);
@@ -284,8 +293,23 @@ static cp_status check_collisions(cp_store *store, cp_error *error)
     return status;
 }
 
-// Replications: forget those that never ran and are planned no more, add the new ones.
+// The plan into the tables. Replications that never ran and are planned no more are forgotten, new
+// ones added.
 static const char EXCHANGE[] =
+    "INSERT INTO study SELECT * FROM temp.planned_study WHERE true ON CONFLICT (id) DO UPDATE SET "
+    "question = excluded.question, design = excluded.design, seed = excluded.seed, "
+    "replications = excluded.replications, duration_s = excluded.duration_s, "
+    "warmup_s = excluded.warmup_s, step_length_s = excluded.step_length_s, "
+    "vehicles = excluded.vehicles, yaml = excluded.yaml, hash = excluded.hash;"
+    "INSERT INTO scenario SELECT * FROM temp.planned_scenario WHERE true ON CONFLICT (id) DO "
+    "UPDATE SET number = excluded.number, sumocfg = excluded.sumocfg, "
+    "sumo_options = excluded.sumo_options, files = excluded.files, "
+    "driver_errors = excluded.driver_errors;"
+    "INSERT INTO variant SELECT * FROM temp.planned_variant WHERE true ON CONFLICT (id) DO UPDATE "
+    "SET number = excluded.number, is_baseline = excluded.is_baseline, "
+    "functions = excluded.functions;"
+    "INSERT INTO vehicle_model SELECT * FROM temp.planned_vehicle_model WHERE true "
+    "ON CONFLICT (name) DO UPDATE SET hash = excluded.hash, yaml = excluded.yaml;"
     "DELETE FROM attempt WHERE replication_id IN (SELECT id FROM replication WHERE status IN "
     "('planned', 'failed') AND id NOT IN (SELECT id FROM temp.plan));"
     "DELETE FROM replication WHERE status IN ('planned', 'failed') AND id NOT IN "
@@ -294,12 +318,15 @@ static const char EXCHANGE[] =
     "SELECT id, scenario_id, variant_id, number, seed, hash FROM temp.plan WHERE true "
     "ON CONFLICT (id) DO UPDATE SET number = excluded.number, "
     "configuration_hash = excluded.configuration_hash;"
+    "DELETE FROM background WHERE scenario_id NOT IN (SELECT scenario_id FROM replication);"
     "DELETE FROM scenario WHERE id NOT IN (SELECT scenario_id FROM replication);"
     // Treatments of a counterfactual study have no replications of their own.
     "DELETE FROM variant WHERE id NOT IN (SELECT variant_id FROM replication) AND id NOT IN "
-    "(SELECT id FROM temp.planned_variant)";
+    "(SELECT id FROM temp.planned_variant);"
+    "DELETE FROM sweep_value; INSERT INTO sweep_value SELECT * FROM temp.planned_sweep_value";
 
-static cp_status write_all(cp_store *store, const cp_plan_rows *rows, cp_error *error)
+// The plan into temporary tables, and whether it fits what the database holds.
+static cp_status prepare_all(cp_store *store, const cp_plan_rows *rows, cp_error *error)
 {
     cp_status status = execute(store, PREPARE, error);
     if (status == CP_OK)
@@ -311,15 +338,13 @@ static cp_status write_all(cp_store *store, const cp_plan_rows *rows, cp_error *
     if (status == CP_OK)
         status = write_variants(store, rows, error);
     if (status == CP_OK)
+        status = write_sweeps(store, rows, error);
+    if (status == CP_OK)
         status = write_vehicle_models(store, rows, error);
     if (status == CP_OK)
         status = write_planned(store, rows, error);
     if (status == CP_OK)
         status = check_collisions(store, error);
-    if (status == CP_OK)
-        status = check_results_agree(store, error);
-    if (status == CP_OK)
-        status = execute(store, EXCHANGE, error);
     return status;
 }
 
@@ -328,10 +353,67 @@ cp_status cp_plan_rows_write(cp_store *store, const cp_plan_rows *rows, cp_error
     cp_status status = cp_store_begin(store, error);
     if (status != CP_OK)
         return status;
-    status = write_all(store, rows, error);
+    status = prepare_all(store, rows, error);
+    if (status == CP_OK)
+        status = check_results_agree(store, error);
+    if (status == CP_OK)
+        status = execute(store, EXCHANGE, error);
     if (status == CP_OK)
         status = cp_store_commit(store, error);
     if (status != CP_OK)
         cp_store_rollback(store);
+    return status;
+}
+
+// ---- looking only --------------------------------------------------------------------------
+
+static cp_planned_state state_from(const char *status)
+{
+    static const struct {
+        const char *text;
+        cp_planned_state state;
+    } STATE[] = {{"planned", CP_PLANNED_WAITING},
+                 {"running", CP_PLANNED_RUNNING},
+                 {"done", CP_PLANNED_DONE},
+                 {"failed", CP_PLANNED_FAILED}};
+    for (size_t k = 0; k < sizeof STATE / sizeof *STATE; k++)
+        if (strcmp(STATE[k].text, status) == 0)
+            return STATE[k].state;
+    return CP_PLANNED_NEW;
+}
+
+static cp_status read_states(cp_store *store, const cp_plan_rows *rows, cp_planned_state *state,
+                             cp_error *error)
+{
+    cp_statement s;
+    cp_status status =
+        cp_statement_prepare(store, "comparing with the plan",
+                             "SELECT status FROM replication WHERE id = ?1", &s, error);
+    for (size_t k = 0; status == CP_OK && k < rows->replication_count; k++) {
+        int row = 0;
+        cp_bind_integer(&s, 1, rows->replication[k].id);
+        status = cp_statement_row(&s, &row, error);
+        state[k] = row ? state_from(column_text(&s, 0)) : CP_PLANNED_NEW;
+        sqlite3_reset(s.handle);
+    }
+    cp_statement_finish(&s);
+    return status;
+}
+
+cp_status cp_plan_rows_compare(cp_store *store, const cp_plan_rows *rows, cp_planned_state *state,
+                               size_t *dropped, cp_error *error)
+{
+    int64_t count = 0;
+    cp_status status = prepare_all(store, rows, error);
+    if (status == CP_OK)
+        status = read_states(store, rows, state, error);
+    if (status == CP_OK)
+        status = cp_store_integer(store, "comparing with the plan",
+                                  "SELECT count(*) FROM replication WHERE status IN ('planned', "
+                                  "'failed') AND id NOT IN (SELECT id FROM temp.plan)",
+                                  &count, error);
+    *dropped = (size_t)count;
+    if (status == CP_OK)
+        status = check_results_agree(store, error);
     return status;
 }

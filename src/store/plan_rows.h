@@ -40,6 +40,15 @@ typedef struct cp_variant_row {
     char *functions; /* JSON */
 } cp_variant_row;
 
+/* A swept parameter of a scenario or variant at its value. */
+typedef struct cp_sweep_row {
+    bool of_scenario;
+    size_t owner;    /* index into the scenarios or variants */
+    char *base;      /* name in the study file */
+    char *parameter; /* key path */
+    double value;
+} cp_sweep_row;
+
 typedef struct cp_vehicle_model_row {
     char *name;
     char hash[CP_HASH_TEXT_SIZE];
@@ -61,13 +70,16 @@ typedef struct cp_plan_rows {
     size_t scenario_count;
     cp_variant_row *variant;
     size_t variant_count;
+    cp_sweep_row *sweep;
+    size_t sweep_count;
     cp_vehicle_model_row *vehicle_model;
     size_t vehicle_model_count;
     cp_replication_row *replication;
     size_t replication_count;
 } cp_plan_rows;
 
-/* Row id of a replication from its natural key; sweep is "" without one. */
+/* Row id of a replication from its natural key. sweep is "": names of swept scenarios and variants
+ * hold their values. */
 int64_t cp_replication_row_id(const char *scenario, const char *variant, const char *sweep,
                               uint64_t seed);
 
@@ -77,5 +89,21 @@ int64_t cp_replication_row_id(const char *scenario, const char *variant, const c
  * otherwise (the difference is named); CP_STORE_FAILED on a collision of row ids. */
 CP_MUST_CHECK cp_status cp_plan_rows_write(cp_store *store, const cp_plan_rows *rows,
                                            cp_error *error);
+
+/* What the database knows of a planned replication. */
+typedef enum cp_planned_state {
+    CP_PLANNED_NEW, /* nothing yet */
+    CP_PLANNED_WAITING,
+    CP_PLANNED_RUNNING,
+    CP_PLANNED_DONE,
+    CP_PLANNED_FAILED /* will be tried again */
+} cp_planned_state;
+
+/* Hold this plan against the database and change nothing: state has one entry for each of
+ * rows->replication; dropped: replications there that cp_plan_rows_write would remove. Errors: as
+ * cp_plan_rows_write; the states are filled in for contradictions too. */
+CP_MUST_CHECK cp_status cp_plan_rows_compare(cp_store *store, const cp_plan_rows *rows,
+                                             cp_planned_state *state, size_t *dropped,
+                                             cp_error *error);
 
 #endif

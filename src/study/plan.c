@@ -14,8 +14,10 @@
 uint64_t cp_plan_seed(const cp_study *study, size_t scenario, size_t variant, size_t number)
 {
     cp_rng_key key = cp_rng_key_text(cp_rng_key_seed(study->seed), "replication seeds");
-    key = cp_rng_key_text(key, study->scenarios[scenario].name);
-    if (study->design == CP_DESIGN_INDEPENDENT)
+    bool independent = study->design == CP_DESIGN_INDEPENDENT;
+    const cp_study_scenario *of = &study->scenarios[scenario];
+    key = cp_rng_key_text(key, independent ? of->name : of->base);
+    if (independent)
         key = cp_rng_key_text(key, study->variants[variant].name);
 
     // Steps by an odd number visit every 31-bit value once: no seed comes twice.
@@ -99,6 +101,16 @@ static cp_status fill_study(const cp_study *study, const cp_vehicle_model_row *m
     return complete ? CP_OK : cp_fail_memory(error, "study");
 }
 
+// Hashes of a scenario's files; of the values of a sweep once.
+static cp_status fill_files(const cp_study *study, size_t k, cp_plan_rows *rows, cp_error *error)
+{
+    const char *path = study->scenarios[k].sumocfg_path;
+    if (k == 0 || strcmp(study->scenarios[k - 1].sumocfg_path, path) != 0)
+        return cp_scenario_files_json(path, &rows->scenario[k].files, error);
+    rows->scenario[k].files = strdup(rows->scenario[k - 1].files);
+    return rows->scenario[k].files != NULL ? CP_OK : cp_fail_memory(error, path);
+}
+
 static cp_status fill_scenarios(const cp_study *study, cp_plan_rows *rows, cp_error *error)
 {
     rows->scenario = calloc(study->scenario_count, sizeof *rows->scenario);
@@ -117,12 +129,50 @@ static cp_status fill_scenarios(const cp_study *study, cp_plan_rows *rows, cp_er
         if (row->name == NULL || row->sumocfg == NULL || row->sumo_options == NULL ||
             row->driver_errors == NULL)
             return cp_fail_memory(error, scenario->name);
-        cp_status status = cp_scenario_files_json(scenario->sumocfg_path, &row->files, error);
+        cp_status status = fill_files(study, k, rows, error);
         if (status != CP_OK)
             return status;
     }
     return CP_OK;
 }
+
+// ---- sweeps --------------------------------------------------------------------------------
+
+static cp_status add_sweeps(bool of_scenario, size_t owner, const char *base,
+                            const cp_study_swept *swept, size_t count, cp_plan_rows *rows,
+                            cp_error *error)
+{
+    for (size_t k = 0; k < count; k++) {
+        cp_sweep_row *row = &rows->sweep[rows->sweep_count++];
+        *row = (cp_sweep_row){of_scenario, owner, strdup(base), strdup(swept[k].parameter),
+                              swept[k].value};
+        if (row->base == NULL || row->parameter == NULL)
+            return cp_fail_memory(error, "sweep");
+    }
+    return CP_OK;
+}
+
+static cp_status fill_sweeps(const cp_study *study, cp_plan_rows *rows, cp_error *error)
+{
+    size_t total = 1;
+    for (size_t k = 0; k < study->scenario_count; k++)
+        total += study->scenarios[k].swept_count;
+    for (size_t k = 0; k < study->variant_count; k++)
+        total += study->variants[k].swept_count;
+    rows->sweep = calloc(total, sizeof *rows->sweep);
+    cp_status status = rows->sweep != NULL ? CP_OK : cp_fail_memory(error, "sweep");
+    for (size_t k = 0; status == CP_OK && k < study->scenario_count; k++) {
+        const cp_study_scenario *of = &study->scenarios[k];
+        status = add_sweeps(true, k, of->base, of->swept, of->swept_count, rows, error);
+    }
+    for (size_t k = 0; status == CP_OK && k < study->variant_count; k++) {
+        const cp_study_variant *of = &study->variants[k];
+        status = add_sweeps(false, k, of->base, of->swept, of->swept_count, rows, error);
+    }
+    return status;
+}
+
+// ---- variants, vehicles --------------------------------------------------------------------
 
 static cp_status fill_variants(const cp_study *study, cp_plan_rows *rows, cp_error *error)
 {
@@ -257,6 +307,8 @@ cp_status cp_plan_create(const cp_study *study, const cp_vehicle_model_row *mode
     if (status == CP_OK)
         status = fill_variants(study, rows, error);
     if (status == CP_OK)
+        status = fill_sweeps(study, rows, error);
+    if (status == CP_OK)
         status = fill_vehicle_models(study, models, rows, error);
     if (status == CP_OK)
         status = fill_replications(study, models, rows, error);
@@ -278,12 +330,17 @@ void cp_plan_destroy(cp_plan_rows *rows)
         free(rows->variant[k].name);
         free(rows->variant[k].functions);
     }
+    for (size_t k = 0; k < rows->sweep_count; k++) {
+        free(rows->sweep[k].base);
+        free(rows->sweep[k].parameter);
+    }
     for (size_t k = 0; k < rows->vehicle_model_count; k++) {
         free(rows->vehicle_model[k].name);
         free(rows->vehicle_model[k].yaml);
     }
     free(rows->scenario);
     free(rows->variant);
+    free(rows->sweep);
     free(rows->vehicle_model);
     free(rows->replication);
     free(rows->study.name);

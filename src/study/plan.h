@@ -17,7 +17,8 @@ void cp_plan_destroy(cp_plan_rows *rows);
 
 /* Seed of replication number of a scenario and variant: a pure function of the study's seed and the
  * scenario's name; with paired seeds the variant takes no part, with independent ones its name
- * does. 31 bits (SUMO's range), different for every number. */
+ * does. Values of a sweep share seeds likewise: unless they are independent, the name is the one
+ * without them. 31 bits (SUMO's range), different for every number. */
 uint64_t cp_plan_seed(const cp_study *study, size_t scenario, size_t variant, size_t number);
 
 /* The planned replication of that row id; NULL when there is none. */

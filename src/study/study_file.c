@@ -4,6 +4,8 @@
 #include "core/file.h"
 #include "core/yaml_file.h"
 #include "study/control_section.h"
+#include "study/study_parts.h"
+#include "study/sweep_section.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -88,6 +90,8 @@ typedef struct raw_study {
     unsigned variants_count;
     raw_vehicles vehicles;
     raw_counterfactual *counterfactual;
+    cp_sweep_entry *sweep;
+    unsigned sweep_count;
 } raw_study;
 
 #define TEXT(key, structure, member)                                                               \
@@ -165,6 +169,7 @@ static const cyaml_schema_field_t STUDY_FIELDS[] = {
     CYAML_FIELD_MAPPING("vehicles", CYAML_FLAG_DEFAULT, raw_study, vehicles, VEHICLES_FIELDS),
     CYAML_FIELD_MAPPING_PTR("counterfactual", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
                             counterfactual, COUNTERFACTUAL_FIELDS),
+    LIST_OPTIONAL("sweep", raw_study, sweep, CP_SWEEP_ENTRY),
     CYAML_FIELD_END};
 static const cyaml_schema_value_t STUDY = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, raw_study, STUDY_FIELDS)};
@@ -370,6 +375,11 @@ static cp_status take_scenario(const cp_yaml_file *file, const raw_scenario *raw
         if (strcmp(study->scenarios[k].name, raw->name) == 0)
             status =
                 cp_yaml_fail(file, error, path, "'%s' is taken by another scenario", raw->name);
+    if (status == CP_OK) {
+        scenario->base = strdup(scenario->name);
+        if (scenario->base == NULL)
+            status = cp_fail_memory(error, path);
+    }
     snprintf(path, sizeof path, "scenarios[%zu].sumocfg", index);
     if (status == CP_OK)
         status = take_path(file, path, raw->sumocfg, &scenario->sumocfg_path, error);
@@ -411,6 +421,11 @@ static cp_status take_variant(const cp_yaml_file *file, const raw_variant *raw, 
     for (size_t k = 0; status == CP_OK && k < index; k++)
         if (strcmp(study->variants[k].name, raw->name) == 0)
             status = cp_yaml_fail(file, error, path, "'%s' is taken by another variant", raw->name);
+    if (status == CP_OK) {
+        variant->base = strdup(variant->name);
+        if (variant->base == NULL)
+            status = cp_fail_memory(error, path);
+    }
     snprintf(path, sizeof path, "variants[%zu].functions", index);
     if (status == CP_OK)
         status = take_controls(file, CP_CONTROL_FUNCTION, path, "function", raw->functions,
@@ -524,6 +539,9 @@ cp_status cp_study_load(const char *path, cp_study *study, cp_error *error)
         status = check_treatments(&file, study, error);
     if (status == CP_OK)
         status = take_vehicles(&file, &raw->vehicles, study, error);
+    // Last: messages about scenarios and variants count them as the file does.
+    if (status == CP_OK)
+        status = cp_sweep_expand(&file, raw->sweep, raw->sweep_count, study, error);
     cp_yaml_close(&file);
 done:
     if (status != CP_OK)
@@ -531,32 +549,12 @@ done:
     return status;
 }
 
-static void destroy_controls(cp_control_settings *settings, size_t count)
-{
-    for (size_t k = 0; k < count; k++) {
-        for (size_t share = 0; share < settings[k].share_count; share++)
-            free(settings[k].shares[share].type);
-        free(settings[k].shares);
-    }
-    free(settings);
-}
-
 void cp_study_destroy(cp_study *study)
 {
-    for (size_t k = 0; k < study->scenario_count; k++) {
-        cp_study_scenario *scenario = &study->scenarios[k];
-        for (size_t word = 0; word < scenario->sumo_option_count; word++)
-            free(scenario->sumo_options[word]);
-        free(scenario->sumo_options);
-        destroy_controls(scenario->driver_errors, scenario->driver_error_count);
-        free(scenario->sumocfg_path);
-        free(scenario->sumocfg);
-        free(scenario->name);
-    }
-    for (size_t k = 0; k < study->variant_count; k++) {
-        destroy_controls(study->variants[k].functions, study->variants[k].function_count);
-        free(study->variants[k].name);
-    }
+    for (size_t k = 0; k < study->scenario_count; k++)
+        cp_study_scenario_destroy(&study->scenarios[k]);
+    for (size_t k = 0; k < study->variant_count; k++)
+        cp_study_variant_destroy(&study->variants[k]);
     for (size_t k = 0; k < study->vehicle_count; k++) {
         free(study->vehicles[k].type);
         free(study->vehicles[k].model_path);
@@ -577,6 +575,15 @@ size_t cp_study_baseline(const cp_study *study)
     while (k + 1 < study->variant_count && !study->variants[k].is_baseline)
         k++;
     return k;
+}
+
+bool cp_study_scenarios_start_alike(const cp_study_scenario *one, const cp_study_scenario *other)
+{
+    bool alike = strcmp(one->sumocfg_path, other->sumocfg_path) == 0 &&
+                 one->sumo_option_count == other->sumo_option_count;
+    for (size_t k = 0; alike && k < one->sumo_option_count; k++)
+        alike = strcmp(one->sumo_options[k], other->sumo_options[k]) == 0;
+    return alike;
 }
 
 const cp_study_scenario *cp_study_find_scenario(const cp_study *study, const char *name)

@@ -25,8 +25,18 @@ typedef enum cp_study_design {
 
 const char *cp_study_design_text(cp_study_design design);
 
+/* One parameter of a sweep at one of its values (study/sweep_section.h). */
+typedef struct cp_study_swept {
+    char *parameter; /* key path in full: "variants.aeb.aeb.ttc_s" */
+    double value;
+} cp_study_swept;
+
 typedef struct cp_study_scenario {
-    char *name;          /* letters, digits, '_', '-', '.'; at most 64; unique */
+    char *name; /* letters, digits, '_', '-', '.'; at most 64; unique; with swept
+                   parameters "base@parameter=value" */
+    char *base; /* name in the study file */
+    cp_study_swept *swept;
+    size_t swept_count;
     char *sumocfg;       /* as written */
     char *sumocfg_path;  /* resolved */
     char **sumo_options; /* further SUMO words */
@@ -37,6 +47,9 @@ typedef struct cp_study_scenario {
 
 typedef struct cp_study_variant {
     char *name; /* like a scenario's */
+    char *base;
+    cp_study_swept *swept;
+    size_t swept_count;
     bool is_baseline;
     cp_control_settings *functions;
     size_t function_count;
@@ -82,6 +95,9 @@ void cp_study_destroy(cp_study *study);
 
 /* Index of the baseline among the variants. */
 size_t cp_study_baseline(const cp_study *study);
+
+/* Whether SUMO is started alike for both: same .sumocfg, same options. */
+bool cp_study_scenarios_start_alike(const cp_study_scenario *one, const cp_study_scenario *other);
 
 /* By name; NULL when there is none. */
 const cp_study_scenario *cp_study_find_scenario(const cp_study *study, const char *name);

@@ -79,6 +79,62 @@ static void finished_replications_cannot_be_dropped(void **state)
     cp_store_close(store);
 }
 
+static void comparing_tells_what_is_done_and_changes_nothing(void **state)
+{
+    small_plan plan;
+    cp_error error = {0};
+    cp_planned_state known[4];
+    size_t dropped = 0;
+    cp_store *store = open_planned(*state, &plan);
+    finish_replication_with(store, &plan, 2, NULL, 0);
+    assert_ok(cp_plan_rows_compare(store, &plan.rows, known, &dropped, &error), &error);
+    assert_int_equal(known[0], CP_PLANNED_WAITING);
+    assert_int_equal(known[2], CP_PLANNED_DONE);
+    assert_int_equal(dropped, 0);
+
+    // One replaced by another: one is new, one would be dropped.
+    plan.replication[3].seed = 999;
+    plan.replication[3].id = cp_replication_row_id("crossing", "aeb", "", 999);
+    assert_ok(cp_plan_rows_compare(store, &plan.rows, known, &dropped, &error), &error);
+    assert_int_equal(known[3], CP_PLANNED_NEW);
+    assert_int_equal(dropped, 1);
+
+    // A contradiction is an error, and the states are there nevertheless.
+    strcpy(plan.replication[2].configuration_hash, "changed");
+    assert_int_equal(cp_plan_rows_compare(store, &plan.rows, known, &dropped, &error),
+                     CP_BAD_INPUT);
+    assert_int_equal(known[2], CP_PLANNED_DONE);
+    assert_true(number_of(store, "SELECT count(*) FROM replication WHERE seed = 999") == 0);
+
+    // A connection that only reads can do it too.
+    cp_store *reader = NULL;
+    assert_ok(cp_store_open(cp_store_path(store), CP_STORE_READ, &reader, &error), &error);
+    strcpy(plan.replication[2].configuration_hash, "configuration 2");
+    assert_ok(cp_plan_rows_compare(reader, &plan.rows, known, &dropped, &error), &error);
+    cp_store_close(reader);
+    cp_store_close(store);
+}
+
+static void sweeps_are_rows(void **state)
+{
+    small_plan plan;
+    cp_error error = {0};
+    cp_sweep_row sweep[2] = {{true, 0, "crossing", "scenarios.crossing.red_light.share_1", 0.25},
+                             {false, 1, "aeb", "variants.aeb.aeb.ttc_s", 1.5}};
+    cp_store *store = open_planned(*state, &plan);
+    plan.rows.sweep = sweep;
+    plan.rows.sweep_count = 2;
+    assert_ok(cp_plan_rows_write(store, &plan.rows, &error), &error);
+    assert_true(number_of(store, "SELECT w.value FROM sweep_value AS w JOIN variant AS v ON v.id = "
+                                 "w.owner_id WHERE v.name = 'aeb' AND w.owner = 'variant'") == 1.5);
+    assert_true(number_of(store, "SELECT w.value FROM sweep_value AS w JOIN scenario AS s ON s.id "
+                                 "= w.owner_id WHERE w.owner = 'scenario'") == 0.25);
+    plan.rows.sweep_count = 0;
+    assert_ok(cp_plan_rows_write(store, &plan.rows, &error), &error);
+    assert_true(number_of(store, "SELECT count(*) FROM sweep_value") == 0);
+    cp_store_close(store);
+}
+
 static void another_study_is_refused(void **state)
 {
     small_plan plan;
@@ -129,6 +185,9 @@ int main(void)
         cmocka_unit_test_setup_teardown(other_seed_is_refused_by_name, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(finished_replications_cannot_be_dropped, fixture_begin,
                                         fixture_end),
+        cmocka_unit_test_setup_teardown(comparing_tells_what_is_done_and_changes_nothing,
+                                        fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(sweeps_are_rows, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(another_study_is_refused, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(id_collision_is_an_error, fixture_begin, fixture_end),
         cmocka_unit_test(row_ids_are_fixed_for_good),

@@ -1,0 +1,1 @@
+"$crashpulse" plan --db x.db

@@ -360,3 +360,42 @@ SELECT s.id, s.name, w.base, 'sumo_options',
 FROM sweep_value AS w
 JOIN scenario AS s ON s.id = w.owner_id
 WHERE w.owner = 'scenario' AND instr(w.parameter, 'scenarios.' || w.base || '.sumo_options.') = 1;
+
+-- One row a secondary crash that goes back to a counted one: the chain of crashes into standing cars
+-- down to the first. generation 1 hit a car of the first crash.
+DROP VIEW IF EXISTS secondary_crash;
+CREATE VIEW secondary_crash AS
+WITH RECURSIVE chain (crash_id, at_id, generation) AS (
+    SELECT id, follows_crash_id, 1 FROM crash WHERE follows_crash_id IS NOT NULL
+    UNION ALL
+    SELECT k.crash_id, c.follows_crash_id, k.generation + 1
+    FROM chain AS k JOIN crash AS c ON c.id = k.at_id
+    WHERE c.follows_crash_id IS NOT NULL
+), first_of (crash_id, first_crash_id, generation) AS (
+    SELECT crash_id, at_id, max(generation) FROM chain GROUP BY crash_id
+)
+SELECT s.name AS scenario, v.name AS variant, r.number AS replication,
+       c.replication_id, f.crash_id, c.follows_crash_id, f.first_crash_id, f.generation,
+       c.time_s, c.time_s - o.time_s AS after_s, c.crash_type, c.closing_speed_m_s, c.validity,
+       o.time_s AS first_time_s, o.crash_type AS first_crash_type,
+       o.closing_speed_m_s AS first_closing_speed_m_s
+FROM first_of AS f
+JOIN crash AS c ON c.id = f.crash_id
+JOIN crash AS o ON o.id = f.first_crash_id
+JOIN replication AS r ON r.id = c.replication_id
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = r.variant_id;
+
+-- The two cars before each crash (history_s in the study file), with the time to contact: negative
+-- before it.
+DROP VIEW IF EXISTS pre_crash;
+CREATE VIEW pre_crash AS
+SELECT s.name AS scenario, v.name AS variant, r.number AS replication, p.crash_id, p.role,
+       x.sumo_id, x.at_fault, p.number, p.time_s - c.time_s AS from_contact_s, p.front_x_m,
+       p.front_y_m, p.yaw_rad, p.speed_m_s, p.acceleration_m_s2
+FROM pre_crash_sample AS p
+JOIN crash AS c ON c.id = p.crash_id
+JOIN crash_vehicle AS x ON x.crash_id = p.crash_id AND x.role = p.role
+JOIN replication AS r ON r.id = c.replication_id
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = r.variant_id;

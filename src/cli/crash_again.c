@@ -18,6 +18,7 @@ cp_status cp_crash_again_simulate(const char *db_path, int64_t crash_id, cp_cras
         again->run.configuration = again->stored.configuration;
         again->run.description = again->stored.description;
         again->run.duration_s = options.duration_s;
+        again->run.is_damaged = again->stored.is_secondary;
         status = cp_crash_simulate(again->run.model[0], again->run.model[1],
                                    &again->run.configuration, &options, &again->run.result, error);
     }

@@ -52,9 +52,9 @@ static const char *olc_status(const cp_crash_run *run, int role)
 
 static const char *validity(const cp_crash_run *run, int role, char text[CP_VALIDITY_TEXT_SIZE])
 {
-    return cp_validity_text(
-        cp_validity(run->model[0], run->model[1], &run->configuration, &run->description, role),
-        text);
+    unsigned outside =
+        cp_validity(run->model[0], run->model[1], &run->configuration, &run->description, role);
+    return cp_validity_text(outside | (run->is_damaged ? CP_OUTSIDE_DAMAGED : 0), text);
 }
 
 static const char *role_text(int role)

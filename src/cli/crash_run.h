@@ -20,6 +20,7 @@ typedef struct cp_crash_run {
     cp_crash_description description;
     cp_crash_result result; /* owned */
     double duration_s;      /* asked for */
+    bool is_damaged;        /* one of the two had crashed before: outside validity */
     bool missed;            /* the two pass each other; simulating is then bad input */
 } cp_crash_run;
 

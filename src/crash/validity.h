@@ -15,7 +15,8 @@
     X(CP_OUTSIDE_OBLIQUE_VELOCITY, 3, "oblique_velocity")                                          \
     X(CP_OUTSIDE_CONTACT_SIDE, 4, "contact_side")                                                  \
     X(CP_OUTSIDE_OPPONENT_STRUCTURE, 5, "opponent_structure")                                      \
-    X(CP_OUTSIDE_MODEL, 6, "model")
+    X(CP_OUTSIDE_MODEL, 6, "model")                                                                \
+    X(CP_OUTSIDE_DAMAGED, 7, "damaged")
 
 enum {
 #define CP_VALIDITY_NAME(name, bit, text) name = 1u << bit,
@@ -28,7 +29,9 @@ enum {
 /* Validity of vehicle role (0 or 1): speed by v_eq = closing * m_other / (m_own + m_other) (the
  * barrier has infinite mass), offset and angle by the calibrated range, oblique velocity beyond
  * 15 degrees (an assumption, stated as one), side struck other than front, opponent struck other
- * than on its front, model never calibrated. Offset and angle of role 1 are those seen from it. */
+ * than on its front, model never calibrated. Offset and angle of role 1 are those seen from it.
+ * (damaged, one of the two had crashed before, is the caller's to add: the configuration does not
+ * tell.) */
 unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
                      const cp_crash_configuration *configuration,
                      const cp_crash_description *description, int role);

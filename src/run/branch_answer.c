@@ -3,6 +3,7 @@
 
 #include "run/branch_process.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* First bytes of an answer; samples follow, then texts: ids and types of the crash, then for every
@@ -13,6 +14,11 @@ typedef struct answer_head {
     size_t other_count;
     bool has_crash;
 } answer_head;
+
+size_t cp_branch_request_size(size_t earlier_count)
+{
+    return offsetof(cp_branch_request, earlier) + earlier_count * sizeof(cp_earlier_crash);
+}
 
 static bool send_text(int to, const char *text)
 {

@@ -8,10 +8,25 @@
 /* What a branch is asked and what it answers, as bytes between a process and its own copy. Ids are
  * texts: the numbers of vehicles first seen after the checkpoint mean nothing to the original. */
 
+#define CP_BRANCH_ID_SIZE 512
+#define CP_BRANCH_EARLIER_MAX 64
+
+/* A crash that one of the two had between the checkpoint and this one; it happens again in the
+ * branch and is not what the branch is about. */
+typedef struct cp_earlier_crash {
+    int role; /* of the vehicle that had it */
+    char opponent[CP_BRANCH_ID_SIZE];
+} cp_earlier_crash;
+
 typedef struct cp_branch_request {
-    double contact_s; /* SUMO clock of the baseline's contact */
-    char ids[2][512]; /* of the two vehicles, role a first */
+    double contact_s;               /* SUMO clock of the baseline's contact */
+    char ids[2][CP_BRANCH_ID_SIZE]; /* of the two vehicles, role a first */
+    size_t earlier_count;
+    cp_earlier_crash earlier[CP_BRANCH_EARLIER_MAX]; /* only as many are sent */
 } cp_branch_request;
+
+/* Bytes of a request with that many earlier crashes. */
+size_t cp_branch_request_size(size_t earlier_count);
 
 /* Another crash in the branch, of vehicles not involved. */
 typedef struct cp_other_crash {

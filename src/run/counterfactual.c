@@ -134,6 +134,12 @@ static const cp_study_variant *treatment_of(const cp_counterfactual *self, size_
     return &self->study->variants[k < self->baseline ? k : k + 1];
 }
 
+static bool is_same_pair(const char *const one[2], const char *const other[2])
+{
+    return (strcmp(one[0], other[0]) == 0 && strcmp(one[1], other[1]) == 0) ||
+           (strcmp(one[0], other[1]) == 0 && strcmp(one[1], other[0]) == 0);
+}
+
 // ---- in a branch ---------------------------------------------------------------------------
 
 /* What a branch has to keep while it runs. */
@@ -152,19 +158,34 @@ static bool is_of_pair(const cp_branch_request *request, uint32_t vehicle)
     return strcmp(id, request->ids[0]) == 0 || strcmp(id, request->ids[1]) == 0;
 }
 
+// Whether one of the two had this crash in the baseline too, before theirs.
+static bool is_earlier_crash(const cp_branch_request *request, const cp_found_contact *found)
+{
+    const char *ids[2] = {sumo_bridge_vehicle_id(found->impact.vehicle[0]),
+                          sumo_bridge_vehicle_id(found->impact.vehicle[1])};
+    for (size_t k = 0; k < request->earlier_count; k++) {
+        const cp_earlier_crash *earlier = &request->earlier[k];
+        const char *pair[2] = {request->ids[earlier->role], earlier->opponent};
+        if (is_same_pair(pair, ids))
+            return true;
+    }
+    return false;
+}
+
 static bool involves_pair(const cp_branch_request *request, const cp_found_contact *found)
 {
     return is_of_pair(request, found->impact.vehicle[0]) ||
            is_of_pair(request, found->impact.vehicle[1]);
 }
 
-// Look at the contacts of the step for the first crash of one of the two.
+// Look at the contacts of the step for the first crash of one of the two that it is about.
 static void look_for_crash(branch_run *run)
 {
     const cp_simulation *simulation = run->self->simulation;
     for (; run->seen < simulation->found_count; run->seen++) {
         const cp_found_contact *found = &simulation->found[run->seen];
-        if (run->first_index == 0 && cp_found_is_crash(found) && involves_pair(run->request, found))
+        if (run->first_index == 0 && cp_found_is_crash(found) &&
+            involves_pair(run->request, found) && !is_earlier_crash(run->request, found))
             run->first_index = run->seen + 1;
     }
 }
@@ -259,7 +280,8 @@ static int run_branch(void *context, size_t number, const void *request, size_t 
                       .request = request,
                       .begun_at = simulation->found_count,
                       .seen = simulation->found_count};
-    if (size != sizeof *run.request)
+    if (size < cp_branch_request_size(0) ||
+        size != cp_branch_request_size(run.request->earlier_count))
         return 1;
 
     // Number 0 changes nothing.
@@ -315,6 +337,41 @@ static bool is_inserted_late(const cp_counterfactual *self, const cp_found_conta
     return false;
 }
 
+static cp_status take_id(uint32_t vehicle, char id[CP_BRANCH_ID_SIZE], cp_error *error)
+{
+    const char *text = sumo_bridge_vehicle_id(vehicle);
+    if (strlen(text) >= CP_BRANCH_ID_SIZE)
+        return cp_fail(error, CP_BAD_INPUT, "vehicle id '%s' is longer than %d characters", text,
+                       CP_BRANCH_ID_SIZE - 1);
+    strcpy(id, text);
+    return CP_OK;
+}
+
+// Crashes that the two had since the checkpoint, before the one that was found at index: standing
+// cars are hit.
+static cp_status take_earlier_crashes(const cp_counterfactual *self, size_t index,
+                                      double checkpoint_s, cp_branch_request *request,
+                                      cp_error *error)
+{
+    const cp_found_contact *found = self->simulation->found;
+    cp_status status = CP_OK;
+    for (size_t k = index; k > 0 && found[k - 1].impact.time_s >= checkpoint_s; k--)
+        for (int role = 0; status == CP_OK && role < 2; role++) {
+            const uint32_t *pair = found[k - 1].impact.vehicle;
+            uint32_t own = found[index].impact.vehicle[role];
+            if (!cp_found_is_crash(&found[k - 1]) || (pair[0] != own && pair[1] != own))
+                continue;
+            if (request->earlier_count == CP_BRANCH_EARLIER_MAX)
+                return cp_fail(error, CP_RUN_FAILED,
+                               "'%s' had more than %d crashes since the checkpoint",
+                               sumo_bridge_vehicle_id(own), CP_BRANCH_EARLIER_MAX);
+            cp_earlier_crash *earlier = &request->earlier[request->earlier_count++];
+            earlier->role = role;
+            status = take_id(pair[0] == own ? pair[1] : pair[0], earlier->opponent, error);
+        }
+    return status;
+}
+
 static cp_status branch(cp_counterfactual *self, size_t index, cp_error *error)
 {
     const cp_found_contact *found = &self->simulation->found[index];
@@ -336,18 +393,17 @@ static cp_status branch(cp_counterfactual *self, size_t index, cp_error *error)
         return CP_OK;
 
     cp_branch_request request = {.contact_s = contact_s};
-    for (int role = 0; role < 2; role++) {
-        const char *id = sumo_bridge_vehicle_id(found->impact.vehicle[role]);
-        if (strlen(id) >= sizeof request.ids[role])
-            return cp_fail(error, CP_BAD_INPUT, "vehicle id '%s' is longer than %zu characters", id,
-                           sizeof request.ids[role] - 1);
-        strcpy(request.ids[role], id);
-    }
+    cp_status status = CP_OK;
+    for (int role = 0; status == CP_OK && role < 2; role++)
+        status = take_id(found->impact.vehicle[role], request.ids[role], error);
+    if (status == CP_OK)
+        status = take_earlier_crashes(self, index, pair->checkpoint_s, &request, error);
     size_t branches = 1 + self->treatment_count;
-    if (!cp_checkpoints_branch(self->checkpoints, pair->checkpoint_s, &request, sizeof request,
-                               branches, &self->ends[number * branches]))
+    if (status == CP_OK && !cp_checkpoints_branch(self->checkpoints, pair->checkpoint_s, &request,
+                                                  cp_branch_request_size(request.earlier_count),
+                                                  branches, &self->ends[number * branches]))
         pair->status = CP_NULL_CHECKPOINT_LOST;
-    return CP_OK;
+    return status;
 }
 
 // Who is at fault now, and since which checkpoint without a break.
@@ -406,15 +462,10 @@ static void keep_roles(cp_branch_answer *answer, const char *const ids[2])
     SWAP(cp_vec2, impact->front_velocity_m_s);
     SWAP(cp_contact_side, impact->side);
     SWAP(bool, answer->found.at_fault);
+    SWAP(bool, answer->found.had_crashed);
     SWAP(const char *, answer->ids);
     SWAP(const char *, answer->types);
 #undef SWAP
-}
-
-static bool is_same_pair(const char *const one[2], const char *const other[2])
-{
-    return (strcmp(one[0], other[0]) == 0 && strcmp(one[1], other[1]) == 0) ||
-           (strcmp(one[0], other[1]) == 0 && strcmp(one[1], other[0]) == 0);
 }
 
 // Name of the first thing in which two vehicle states differ; NULL when they are the same bits.
@@ -464,6 +515,7 @@ static cp_status fill_crash(const cp_branch_answer *answer, const cp_fleet *flee
         names.sumo_id[role] = answer->ids[role];
         names.sumo_type[role] = answer->types[role];
         names.at_fault[role] = answer->found.at_fault[role];
+        names.had_crashed[role] = answer->found.had_crashed[role];
     }
     return cp_crash_record_fill(&answer->found.impact, &names, fleet, row, error);
 }

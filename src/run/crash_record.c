@@ -42,6 +42,8 @@ static cp_status fill_vehicle(const cp_impact *impact, const cp_impact_names *na
     vehicle->velocity_angle_rad = row->description.velocity_angle_rad[role];
     vehicle->side = impact->side[role];
     vehicle->outside = cp_validity(models[0], models[1], configuration, &row->description, role);
+    if (names->had_crashed[0] || names->had_crashed[1])
+        vehicle->outside |= CP_OUTSIDE_DAMAGED;
     vehicle->severity = NO_SEVERITY;
     vehicle->crush_m = NAN;
     return CP_OK;
@@ -105,6 +107,8 @@ cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *n
     for (int role = 0; role < 2; role++)
         drop_sign_of_zero(&configuration.vehicle[role]);
     row->time_s = impact->time_s;
+    row->is_secondary = names->had_crashed[0] || names->had_crashed[1];
+    row->follows = CP_FOLLOWS_NONE;
     row->contact_m = impact->contact_m;
     row->description = cp_impact_describe(impact, models[0], models[1]);
     row->t_common_s = row->separation_s = row->shift_m = NAN;

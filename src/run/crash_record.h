@@ -14,6 +14,7 @@ typedef struct cp_impact_names {
     const char *sumo_id[2];
     const char *sumo_type[2];
     bool at_fault[2];
+    bool had_crashed[2]; /* it had crashed before: the surrogate's undamaged car is not it */
 } cp_impact_names;
 
 /* Fill row, zeroed before; what it owns is freed by cp_result_rows_destroy. A crash the surrogate

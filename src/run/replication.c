@@ -60,19 +60,42 @@ static cp_status run_steps(replication_run *run, cp_error *error)
 
 // ---- what was found ------------------------------------------------------------------------
 
+// Number of a found crash among those that count.
+static size_t number_of(const cp_simulation *simulation, size_t index)
+{
+    size_t number = 0;
+    if (index == CP_FOLLOWS_NONE || simulation->found[index].found_as != CP_FOUND_CRASH)
+        return CP_FOLLOWS_NONE;
+    for (size_t k = 0; k < index; k++)
+        number += simulation->found[k].found_as == CP_FOUND_CRASH;
+    return number;
+}
+
 static cp_status record_crash(replication_run *run, const cp_found_contact *found, cp_error *error)
 {
+    cp_simulation *simulation = &run->simulation;
     const cp_impact *impact = &found->impact;
     cp_impact_names names;
     for (int role = 0; role < 2; role++) {
         names.sumo_id[role] = sumo_bridge_vehicle_id(impact->vehicle[role]);
         names.sumo_type[role] = sumo_bridge_type_id(impact->state[role].type);
         names.at_fault[role] = found->at_fault[role];
+        names.had_crashed[role] = found->had_crashed[role];
     }
     cp_crash_row *row = cp_result_rows_add_crash(run->results);
     if (row == NULL)
         return cp_fail_memory(error, "crash");
-    return cp_crash_record_fill(impact, &names, run->fleet, row, error);
+    cp_status status = cp_crash_record_fill(impact, &names, run->fleet, row, error);
+    row->follows = number_of(simulation, found->follows);
+    if (simulation->history == NULL)
+        return status;
+
+    // The row takes the history over.
+    cp_found_history *before = &simulation->before[run->results->crash_count - 1];
+    row->history = before->rows;
+    row->history_count = before->count;
+    *before = (cp_found_history){.found = before->found};
+    return status;
 }
 
 static cp_status record_contact(replication_run *run, const cp_found_contact *found,

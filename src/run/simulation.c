@@ -42,7 +42,7 @@ cp_status cp_simulation_begin(const cp_study *study, const cp_study_scenario *sc
 {
     cp_sumo_words words;
     *simulation = (cp_simulation){0};
-    cp_status status = cp_sumo_words_create(scenario, variant, seed, &words, error);
+    cp_status status = cp_sumo_words_create(scenario, variant, seed, study->stay_s, &words, error);
     if (status != CP_OK)
         return status;
     cp_traffic_options options = {.sumocfg = scenario->sumocfg_path,
@@ -57,13 +57,22 @@ cp_status cp_simulation_begin(const cp_study *study, const cp_study_scenario *sc
                                  &simulation->controls, error);
     if (status == CP_OK)
         status = cp_detector_create(&simulation->detector, error);
-    if (status == CP_OK)
-        simulation->counted_from_s = cp_traffic_time_s(simulation->traffic) + study->warmup_s;
-    return status;
+    if (status == CP_OK && study->history_s > 0.0)
+        status =
+            cp_history_create(study->history_s, study->step_length_s, &simulation->history, error);
+    if (status != CP_OK)
+        return status;
+    simulation->counted_from_s = cp_traffic_time_s(simulation->traffic) + study->warmup_s;
+    simulation->stay_s = study->stay_s;
+    return CP_OK;
 }
 
 void cp_simulation_end(cp_simulation *simulation)
 {
+    cp_history_destroy(simulation->history);
+    for (size_t k = 0; k < simulation->before_count; k++)
+        free(simulation->before[k].rows);
+    free(simulation->before);
     cp_cross_check_destroy(&simulation->check);
     cp_detector_destroy(simulation->detector);
     cp_controls_destroy(simulation->controls);
@@ -97,6 +106,26 @@ static cp_status remember_crashed(cp_simulation *simulation, uint32_t vehicle, c
     return CP_OK;
 }
 
+// The error of a driver ends with his crash.
+static bool is_at_fault(void *context, uint32_t vehicle)
+{
+    const cp_simulation *simulation = context;
+    return cp_controls_is_at_fault(simulation->controls, vehicle) &&
+           !cp_traffic_is_held(simulation->traffic, vehicle);
+}
+
+// Index of the first crash of a vehicle.
+static size_t first_crash_of(const cp_simulation *simulation, uint32_t vehicle)
+{
+    for (size_t k = 0; k < simulation->found_count; k++) {
+        const cp_found_contact *found = &simulation->found[k];
+        if (cp_found_is_crash(found) &&
+            (found->impact.vehicle[0] == vehicle || found->impact.vehicle[1] == vehicle))
+            return k;
+    }
+    return CP_FOLLOWS_NONE;
+}
+
 static cp_status remember_found(cp_simulation *simulation, const cp_impact *impact,
                                 const char *found_as, cp_error *error)
 {
@@ -109,11 +138,37 @@ static cp_status remember_found(cp_simulation *simulation, const cp_impact *impa
         simulation->found_room = room;
     }
     cp_found_contact *found = &simulation->found[simulation->found_count++];
-    *found = (cp_found_contact){.impact = *impact, .found_as = found_as};
-    for (int role = 0; role < 2; role++)
-        found->at_fault[role] =
-            cp_controls_is_at_fault(simulation->controls, impact->vehicle[role]);
+    *found =
+        (cp_found_contact){.impact = *impact, .found_as = found_as, .follows = CP_FOLLOWS_NONE};
+    for (int role = 0; role < 2; role++) {
+        found->at_fault[role] = is_at_fault(simulation, impact->vehicle[role]);
+        found->had_crashed[role] = cp_traffic_is_held(simulation->traffic, impact->vehicle[role]);
+        size_t earlier = found->had_crashed[role]
+                             ? first_crash_of(simulation, impact->vehicle[role])
+                             : CP_FOLLOWS_NONE;
+        if (earlier < found->follows)
+            found->follows = earlier;
+    }
     return CP_OK;
+}
+
+// What came before the crash found last.
+static cp_status remember_history(cp_simulation *simulation, cp_error *error)
+{
+    if (simulation->before_count == simulation->before_room) {
+        size_t room = simulation->before_room == 0 ? 64 : 2 * simulation->before_room;
+        cp_found_history *larger = realloc(simulation->before, room * sizeof *larger);
+        if (larger == NULL)
+            return cp_fail_memory(error, "history of crashes");
+        simulation->before = larger;
+        simulation->before_room = room;
+    }
+    size_t index = simulation->found_count - 1;
+    const cp_impact *impact = &simulation->found[index].impact;
+    cp_found_history *before = &simulation->before[simulation->before_count++];
+    *before = (cp_found_history){.found = index};
+    return cp_history_of(simulation->history, impact->vehicle, impact->time_s, &before->rows,
+                         &before->count, error);
 }
 
 // A confirmed impact is a crash, unless one of the two had its crash earlier in this step or the
@@ -130,6 +185,8 @@ static cp_status take_impact(cp_simulation *simulation, const cp_impact *impact,
         found_as = CP_FOUND_WARMUP;
 
     cp_status status = remember_found(simulation, impact, found_as, error);
+    if (status == CP_OK && found_as == CP_FOUND_CRASH && simulation->history != NULL)
+        status = remember_history(simulation, error);
     if (status == CP_OK)
         status = cp_cross_check_add_contact(&simulation->check, impact->vehicle[0],
                                             impact->vehicle[1], found_as, impact->time_s, error);
@@ -145,9 +202,8 @@ static cp_status take_impacts(cp_simulation *simulation, cp_error *error)
     const cp_impact *impacts = NULL;
     size_t count = 0;
     simulation->crashed_count = 0;
-    cp_status status =
-        cp_detector_step(simulation->detector, simulation->traffic, cp_controls_is_at_fault,
-                         simulation->controls, &impacts, &count, error);
+    cp_status status = cp_detector_step(simulation->detector, simulation->traffic, is_at_fault,
+                                        simulation, &impacts, &count, error);
     for (size_t k = 0; status == CP_OK && k < count; k++)
         status = take_impact(simulation, &impacts[k], error);
     return status;
@@ -188,8 +244,14 @@ cp_status cp_simulation_step(cp_simulation *simulation, cp_error *error)
     if (status == CP_OK)
         status = take_sumo_collisions(simulation, error);
 
-    // Crashed cars leave the road; what happens to it afterwards is another study's question.
+    if (status == CP_OK && simulation->history != NULL)
+        status = cp_history_keep(simulation->history, simulation->traffic, error);
+
+    // Crashed cars leave the road or stand on it for a while.
+    double until_s = cp_traffic_time_s(simulation->traffic) + simulation->stay_s;
     for (size_t k = 0; status == CP_OK && k < simulation->crashed_count; k++)
-        status = cp_traffic_remove(simulation->traffic, simulation->crashed[k], error);
+        status = simulation->stay_s > 0.0
+                     ? cp_traffic_hold(simulation->traffic, simulation->crashed[k], until_s, error)
+                     : cp_traffic_remove(simulation->traffic, simulation->crashed[k], error);
     return status;
 }

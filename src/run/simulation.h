@@ -5,6 +5,7 @@
 #include "control/control.h"
 #include "impact/impact.h"
 #include "run/cross_check.h"
+#include "run/history.h"
 #include "study/study_file.h"
 
 /* The traffic of one replication, step by step: what the baseline and every branch from a
@@ -18,8 +19,17 @@ extern const char CP_FOUND_WARMUP[];      /* confirmed, but before the end of th
 typedef struct cp_found_contact {
     cp_impact impact;
     const char *found_as; /* one of the above, or the verdict of a contact that is no crash */
-    bool at_fault[2];
+    bool at_fault[2];     /* a driver error is at work on it; never on a car that had crashed */
+    bool had_crashed[2];  /* it stands there since an earlier crash */
+    size_t follows;       /* index of that crash (of both cars' the first); CP_FOLLOWS_NONE */
 } cp_found_contact;
+
+/* What the two cars of a counted crash did before it. */
+typedef struct cp_found_history {
+    size_t found;         /* index of the crash */
+    cp_history_row *rows; /* owned */
+    size_t count;
+} cp_found_history;
 
 /* Zero-initialise, begin, step, end. */
 typedef struct cp_simulation {
@@ -27,7 +37,12 @@ typedef struct cp_simulation {
     cp_controls *controls; /* drivers and functions of the variant; in a branch the treatment too */
     cp_detector *detector;
     cp_cross_check check;
-    double counted_from_s;   /* SUMO clock: end of the warm-up */
+    double counted_from_s;    /* SUMO clock: end of the warm-up */
+    double stay_s;            /* of the study: how long crashed cars stay */
+    cp_history *history;      /* NULL: none is kept */
+    cp_found_history *before; /* one for each counted crash, in their order; if history */
+    size_t before_count;
+    size_t before_room;
     cp_found_contact *found; /* since the beginning, in order of time, then ids */
     size_t found_count;
     size_t found_room;
@@ -44,7 +59,8 @@ CP_MUST_CHECK cp_status cp_simulation_begin(const cp_study *study,
                                             cp_simulation *simulation, cp_error *error);
 void cp_simulation_end(cp_simulation *simulation);
 
-/* One step: traffic, controls, contacts; crashed cars leave the road. */
+/* One step: traffic, controls, contacts; crashed cars leave the road, or stand there as long as the
+ * study says. */
 CP_MUST_CHECK cp_status cp_simulation_step(cp_simulation *simulation, cp_error *error);
 
 /* Whether a found contact is a confirmed crash, counted or not. */

@@ -8,6 +8,10 @@
 #include <string.h>
 
 static const char PREFIX_OPTION[] = "--output-prefix";
+static const char TELEPORT_OPTION[] = "--time-to-teleport";
+
+// SUMO's default time before it teleports a waiting vehicle.
+#define TELEPORT_S 300.0
 
 // The prefix a scenario asks for in its options, as two words or one with '='; "" without.
 static const char *prefix_of(const cp_study_scenario *scenario)
@@ -26,6 +30,17 @@ static const char *prefix_of(const cp_study_scenario *scenario)
     return prefix;
 }
 
+static bool has_option(const cp_study_scenario *scenario, const char *option)
+{
+    const size_t length = strlen(option);
+    for (size_t k = 0; k < scenario->sumo_option_count; k++) {
+        const char *word = scenario->sumo_options[k];
+        if (strncmp(word, option, length) == 0 && (word[length] == '=' || word[length] == '\0'))
+            return true;
+    }
+    return false;
+}
+
 static bool add(cp_sumo_words *words, const char *text)
 {
     words->word[words->count] = strdup(text);
@@ -33,11 +48,11 @@ static bool add(cp_sumo_words *words, const char *text)
 }
 
 cp_status cp_sumo_words_create(const cp_study_scenario *scenario, const cp_study_variant *variant,
-                               uint64_t seed, cp_sumo_words *words, cp_error *error)
+                               uint64_t seed, double stay_s, cp_sumo_words *words, cp_error *error)
 {
     const size_t length = sizeof PREFIX_OPTION - 1;
-    char prefix[512];
-    *words = (cp_sumo_words){.word = calloc(scenario->sumo_option_count + 2, sizeof(char *))};
+    char prefix[512], teleport[32];
+    *words = (cp_sumo_words){.word = calloc(scenario->sumo_option_count + 4, sizeof(char *))};
     bool good = words->word != NULL;
     snprintf(prefix, sizeof prefix, "%s_%s_%" PRIu64 "_%.300s", scenario->name,
              variant->name != NULL ? variant->name : "probe", seed, prefix_of(scenario));
@@ -51,7 +66,11 @@ cp_status cp_sumo_words_create(const cp_study_scenario *scenario, const cp_study
         else if (!is_prefix || word[length] != '=')
             good = add(words, word);
     }
-    if (good && add(words, PREFIX_OPTION) && add(words, prefix))
+    good = good && add(words, PREFIX_OPTION) && add(words, prefix);
+    snprintf(teleport, sizeof teleport, "%g", stay_s + TELEPORT_S);
+    if (good && stay_s > 0.0 && !has_option(scenario, TELEPORT_OPTION))
+        good = add(words, TELEPORT_OPTION) && add(words, teleport);
+    if (good)
         return CP_OK;
     cp_sumo_words_destroy(words);
     return cp_fail_memory(error, "SUMO's options");

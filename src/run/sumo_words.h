@@ -7,7 +7,10 @@
 /* The further SUMO options of one replication: those of its scenario, and an output prefix of its
  * own. Whatever files the .sumocfg or an option writes (tripinfo.xml), parallel replications write
  * each their own: left_turn_aeb_421632325_tripinfo.xml. A prefix the scenario gives follows ours.
- */
+ *
+ * Where crashed cars stay (stay_s > 0), SUMO must neither teleport them nor set the cars that wait
+ * behind them down in front: --time-to-teleport is stay_s + 300 s, unless the scenario's options
+ * say otherwise. */
 
 typedef struct cp_sumo_words {
     char **word;
@@ -17,7 +20,7 @@ typedef struct cp_sumo_words {
 /* The caller destroys. Error: CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_sumo_words_create(const cp_study_scenario *scenario,
                                              const cp_study_variant *variant, uint64_t seed,
-                                             cp_sumo_words *words, cp_error *error);
+                                             double stay_s, cp_sumo_words *words, cp_error *error);
 void cp_sumo_words_destroy(cp_sumo_words *words);
 
 #endif

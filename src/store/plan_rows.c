@@ -48,6 +48,9 @@ static const char DIFFERENCE[] =
     "FROM study AS o, temp.planned_study AS n UNION ALL "
     "SELECT 'step_length_s', o.step_length_s, n.step_length_s "
     "FROM study AS o, temp.planned_study AS n UNION ALL "
+    "SELECT 'stay_s', o.stay_s, n.stay_s FROM study AS o, temp.planned_study AS n UNION ALL "
+    "SELECT 'history_s', o.history_s, n.history_s "
+    "FROM study AS o, temp.planned_study AS n UNION ALL "
     "SELECT 'vehicles', o.vehicles, n.vehicles "
     "FROM study AS o, temp.planned_study AS n UNION ALL "
     "SELECT 'vehicle model ' || n.name, o.hash, n.hash "
@@ -84,8 +87,10 @@ static cp_status write_study(cp_store *store, const cp_study_row *row, cp_error 
     cp_statement s;
     cp_status status =
         cp_statement_prepare(store, "planning the study",
-                             "INSERT INTO temp.planned_study "
-                             "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)",
+                             "INSERT INTO temp.planned_study (id, name, question, design, seed, "
+                             "replications, duration_s, warmup_s, step_length_s, vehicles, yaml, "
+                             "hash, stay_s, history_s) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, "
+                             "?9, ?10, ?11, ?12, ?13, ?14)",
                              &s, error);
     if (status != CP_OK)
         return status;
@@ -101,6 +106,8 @@ static cp_status write_study(cp_store *store, const cp_study_row *row, cp_error 
     cp_bind_text(&s, 10, row->vehicles);
     cp_bind_text(&s, 11, row->yaml);
     cp_bind_text(&s, 12, row->hash);
+    cp_bind_real(&s, 13, row->stay_s);
+    cp_bind_real(&s, 14, row->history_s);
     status = cp_statement_run(&s, error);
     cp_statement_finish(&s);
     return status;
@@ -300,7 +307,8 @@ static const char EXCHANGE[] =
     "question = excluded.question, design = excluded.design, seed = excluded.seed, "
     "replications = excluded.replications, duration_s = excluded.duration_s, "
     "warmup_s = excluded.warmup_s, step_length_s = excluded.step_length_s, "
-    "vehicles = excluded.vehicles, yaml = excluded.yaml, hash = excluded.hash;"
+    "vehicles = excluded.vehicles, yaml = excluded.yaml, hash = excluded.hash, "
+    "stay_s = excluded.stay_s, history_s = excluded.history_s;"
     "INSERT INTO scenario SELECT * FROM temp.planned_scenario WHERE true ON CONFLICT (id) DO "
     "UPDATE SET number = excluded.number, sumocfg = excluded.sumocfg, "
     "sumo_options = excluded.sumo_options, files = excluded.files, "

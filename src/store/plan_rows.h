@@ -21,6 +21,8 @@ typedef struct cp_study_row {
     double duration_s;
     double warmup_s;
     double step_length_s;
+    double stay_s;
+    double history_s;
     char *vehicles; /* JSON */
     char *yaml;
     char hash[CP_HASH_TEXT_SIZE];

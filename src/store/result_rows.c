@@ -61,6 +61,7 @@ void cp_crash_row_destroy(cp_crash_row *crash)
         free(crash->vehicle[v].vehicle_model);
         free(crash->vehicle[v].pulse);
     }
+    free(crash->history);
     *crash = (cp_crash_row){0};
 }
 
@@ -118,6 +119,11 @@ static cp_status write_crash(cp_statement *s, const cp_result_rows *rows, size_t
     cp_bind_real(s, 13, crash->t_common_s);
     cp_bind_real(s, 14, crash->separation_s);
     cp_bind_real(s, 15, crash->shift_m);
+    cp_bind_integer(s, 16, crash->is_secondary);
+    if (crash->is_secondary && crash->follows != CP_FOLLOWS_NONE)
+        cp_bind_integer(s, 17, rows->replication_id * CP_CRASHES_MAX + (int64_t)crash->follows);
+    else
+        cp_bind_real(s, 17, NAN);
     return cp_statement_run(s, error);
 }
 
@@ -200,16 +206,40 @@ static cp_status write_pulse(cp_statement *s, const cp_result_rows *rows, size_t
     return cp_statement_run(s, error);
 }
 
+static cp_status write_history(cp_statement *s, const cp_result_rows *rows, size_t number,
+                               cp_error *error)
+{
+    const cp_crash_row *crash = &rows->crash[number];
+    int64_t place[2] = {0, 0};
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < crash->history_count; k++) {
+        const cp_history_row *row = &crash->history[k];
+        cp_bind_integer(s, 1, rows->replication_id * CP_CRASHES_MAX + (int64_t)number);
+        cp_bind_text(s, 2, ROLE[row->role]);
+        cp_bind_integer(s, 3, place[row->role]++);
+        cp_bind_real(s, 4, row->time_s);
+        cp_bind_real(s, 5, row->front_m.x);
+        cp_bind_real(s, 6, row->front_m.y);
+        cp_bind_real(s, 7, row->yaw_rad);
+        cp_bind_real(s, 8, row->speed_m_s);
+        cp_bind_real(s, 9, row->acceleration_m_s2);
+        status = cp_statement_run(s, error);
+    }
+    return status;
+}
+
 static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_error *error)
 {
-    cp_statement crash = {0}, vehicle = {0}, pulse = {0};
+    cp_statement crash = {0}, vehicle = {0}, pulse = {0}, history = {0};
     if (rows->crash_count > CP_CRASHES_MAX)
         return cp_fail(error, CP_STORE_FAILED, "replication %lld has more than %d crashes",
                        (long long)rows->replication_id, CP_CRASHES_MAX);
     cp_status status = cp_statement_prepare(
         store, "writing a crash",
-        "INSERT INTO crash VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, "
-        "?15)",
+        "INSERT INTO crash (id, replication_id, number, time_s, x_m, y_m, crash_type, "
+        "closing_speed_m_s, lateral_offset_m, angle_rad, overlap_1, validity, t_common_s, "
+        "separation_s, shift_m, is_secondary, follows_crash_id) VALUES (?1, ?2, ?3, ?4, ?5, ?6, "
+        "?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17)",
         &crash, error);
     if (status == CP_OK)
         status = cp_statement_prepare(
@@ -223,6 +253,12 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
         status = cp_statement_prepare(store, "writing a pulse",
                                       "INSERT INTO pulse VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &pulse,
                                       error);
+    if (status == CP_OK)
+        status = cp_statement_prepare(
+            store, "writing the history of a crash",
+            "INSERT INTO pre_crash_sample (crash_id, role, number, time_s, front_x_m, front_y_m, "
+            "yaw_rad, speed_m_s, acceleration_m_s2) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
+            &history, error);
     for (size_t k = 0; status == CP_OK && k < rows->crash_count; k++) {
         status = write_crash(&crash, rows, k, error);
         for (int role = 0; status == CP_OK && role < 2; role++) {
@@ -230,7 +266,10 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
             if (status == CP_OK)
                 status = write_pulse(&pulse, rows, k, role, error);
         }
+        if (status == CP_OK)
+            status = write_history(&history, rows, k, error);
     }
+    cp_statement_finish(&history);
     cp_statement_finish(&pulse);
     cp_statement_finish(&vehicle);
     cp_statement_finish(&crash);

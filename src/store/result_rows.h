@@ -33,6 +33,19 @@ typedef struct cp_crash_vehicle_row {
     double sample_interval_s;
 } cp_crash_vehicle_row;
 
+/* One vehicle in one step before a crash. */
+typedef struct cp_history_row {
+    int role; /* 0 = a, 1 = b */
+    double time_s;
+    cp_vec2 front_m;
+    double yaw_rad;
+    double speed_m_s;
+    double acceleration_m_s2;
+} cp_history_row;
+
+/* follows of a crash that follows none that is counted. */
+#define CP_FOLLOWS_NONE SIZE_MAX
+
 typedef struct cp_crash_row {
     double time_s;
     cp_vec2 contact_m;
@@ -41,6 +54,10 @@ typedef struct cp_crash_row {
     double separation_s;
     double shift_m;
     cp_crash_vehicle_row vehicle[2]; /* a, b */
+    bool is_secondary;               /* one of the two had crashed before */
+    size_t follows; /* number of that crash if is_secondary; CP_FOLLOWS_NONE: not counted */
+    cp_history_row *history; /* owned; role a's in order of time, then b's; NULL: none */
+    size_t history_count;
 } cp_crash_row;
 
 typedef struct cp_contact_row {

@@ -45,8 +45,9 @@ static const char READ_CRASH[] =
     "coalesce(r.crash_options ->> 'time_step_s', 0.0005), "
     "coalesce(r.crash_options ->> 'duration_s', 0.2), "
     "coalesce(r.crash_options ->> 'longest_duration_s', 0.4), "
-    "coalesce(r.crash_options ->> 'coast_after_s', 0.01), r.crashpulse_version "
-    "FROM crash AS c JOIN replication AS r ON r.id = c.replication_id WHERE c.id = ?1";
+    "coalesce(r.crash_options ->> 'coast_after_s', 0.01), r.crashpulse_version, "
+    "c.is_secondary FROM crash AS c JOIN replication AS r ON r.id = c.replication_id WHERE c.id = "
+    "?1";
 
 static cp_status read_crash(cp_store *store, cp_stored_crash *crash, cp_error *error)
 {
@@ -71,6 +72,7 @@ static cp_status read_crash(cp_store *store, cp_stored_crash *crash, cp_error *e
         crash->options.longest_duration_s = sqlite3_column_double(s.handle, 7);
         crash->options.coast_after_s = sqlite3_column_double(s.handle, 8);
         snprintf(crash->crashpulse_version, sizeof crash->crashpulse_version, "%s", text_of(&s, 9));
+        crash->is_secondary = sqlite3_column_int(s.handle, 10) != 0;
     }
     cp_statement_finish(&s);
     return status;

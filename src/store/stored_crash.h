@@ -17,6 +17,7 @@ typedef struct cp_stored_crash {
     cp_crash_options options;
     char crashpulse_version[32]; /* that simulated it */
     double time_s;               /* SUMO clock */
+    bool is_secondary;           /* one of the two had crashed before */
     char sumo_id[2][128];
 } cp_stored_crash;
 

@@ -93,6 +93,8 @@ static cp_status fill_study(const cp_study *study, const cp_vehicle_model_row *m
                           .duration_s = study->duration_s,
                           .warmup_s = study->warmup_s,
                           .step_length_s = study->step_length_s,
+                          .stay_s = study->stay_s,
+                          .history_s = study->history_s,
                           .vehicles = vehicles_text(study, models),
                           .yaml = strdup(study->content)};
     cp_hash_bytes(study->content, strlen(study->content), row->hash);
@@ -262,6 +264,10 @@ static cp_status hash_configuration(const cp_study *study, const cp_vehicle_mode
         "vehicles", rows->study.vehicles, "vehicle_files", hashes);
     if (study->design == CP_DESIGN_COUNTERFACTUAL)
         json_object_set_new(configuration, "counterfactual", counterfactual_json(study, rows));
+    if (study->stay_s > 0.0)
+        json_object_set_new(configuration, "stay_s", json_real(study->stay_s));
+    if (study->history_s > 0.0)
+        json_object_set_new(configuration, "history_s", json_real(study->history_s));
     char *text = take_text(configuration);
     if (text == NULL)
         return cp_fail_memory(error, "configuration");

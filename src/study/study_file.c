@@ -48,6 +48,10 @@ typedef struct raw_counterfactual {
     char *time_series_s;
 } raw_counterfactual;
 
+typedef struct raw_after_crash {
+    char *stay_s;
+} raw_after_crash;
+
 typedef struct raw_scenario {
     char *name;
     char *sumocfg;
@@ -84,6 +88,8 @@ typedef struct raw_study {
     char *duration_s;
     char *warmup_s;
     char *step_length_s;
+    char *history_s;
+    raw_after_crash *after_crash;
     raw_scenario *scenarios;
     unsigned scenarios_count;
     raw_variant *variants;
@@ -154,6 +160,9 @@ static const cyaml_schema_field_t COUNTERFACTUAL_FIELDS[] = {
     TEXT_OPTIONAL("checkpoints", raw_counterfactual, checkpoints),
     TEXT_OPTIONAL("time_series_s", raw_counterfactual, time_series_s), CYAML_FIELD_END};
 
+static const cyaml_schema_field_t AFTER_CRASH_FIELDS[] = {TEXT("stay_s", raw_after_crash, stay_s),
+                                                          CYAML_FIELD_END};
+
 static const cyaml_schema_field_t STUDY_FIELDS[] = {
     TEXT("study", raw_study, study),
     TEXT_OPTIONAL("question", raw_study, question),
@@ -164,6 +173,9 @@ static const cyaml_schema_field_t STUDY_FIELDS[] = {
     TEXT("duration_s", raw_study, duration_s),
     TEXT_OPTIONAL("warmup_s", raw_study, warmup_s),
     TEXT_OPTIONAL("step_length_s", raw_study, step_length_s),
+    TEXT_OPTIONAL("history_s", raw_study, history_s),
+    CYAML_FIELD_MAPPING_PTR("after_crash", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
+                            after_crash, AFTER_CRASH_FIELDS),
     LIST("scenarios", raw_study, scenarios, SCENARIO),
     LIST("variants", raw_study, variants, VARIANT),
     CYAML_FIELD_MAPPING("vehicles", CYAML_FLAG_DEFAULT, raw_study, vehicles, VEHICLES_FIELDS),
@@ -259,6 +271,11 @@ static cp_status take_head(const cp_yaml_file *file, const raw_study *raw, cp_st
     if (status == CP_OK)
         status = cp_yaml_number(file, "step_length_s", raw->step_length_s, 0.001, 1,
                                 &study->step_length_s, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "history_s", raw->history_s, 0, 60, &study->history_s, error);
+    if (status == CP_OK && raw->after_crash != NULL)
+        status = cp_yaml_number(file, "after_crash.stay_s", raw->after_crash->stay_s, 0, 86400,
+                                &study->stay_s, error);
     study->replications = (size_t)replications;
     return status;
 }

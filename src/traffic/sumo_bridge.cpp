@@ -634,6 +634,13 @@ cp_status sumo_bridge_set_speed_mode(uint32_t vehicle, int mode, cp_error *error
     });
 }
 
+cp_status sumo_bridge_set_lane_change_mode(uint32_t vehicle, int mode, cp_error *error)
+{
+    return command_vehicle("set lane change mode", vehicle, error, [=](const std::string &id) {
+        libsumo::Vehicle::setLaneChangeMode(id, mode);
+    });
+}
+
 cp_status sumo_bridge_speed_mode(uint32_t vehicle, int *mode, cp_error *error)
 {
     *mode = 0;

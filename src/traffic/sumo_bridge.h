@@ -132,6 +132,9 @@ CP_MUST_CHECK cp_status sumo_bridge_remove(uint32_t vehicle, cp_error *error);
 CP_MUST_CHECK cp_status sumo_bridge_set_speed(uint32_t vehicle, double speed_m_s, cp_error *error);
 /* SUMO's speed mode bit set (31 = all checks on). */
 CP_MUST_CHECK cp_status sumo_bridge_set_speed_mode(uint32_t vehicle, int mode, cp_error *error);
+/* SUMO's lane change mode bit set (1621 = all changes of its own; 0 = none). */
+CP_MUST_CHECK cp_status sumo_bridge_set_lane_change_mode(uint32_t vehicle, int mode,
+                                                         cp_error *error);
 CP_MUST_CHECK cp_status sumo_bridge_speed_mode(uint32_t vehicle, int *mode, cp_error *error);
 /* Factor on the speed limits that the vehicle's driver takes as his own, > 0. */
 CP_MUST_CHECK cp_status sumo_bridge_set_speed_factor(uint32_t vehicle, double factor_1,

@@ -6,6 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+// A crashed vehicle that stays on the road.
+typedef struct held_vehicle {
+    uint32_t vehicle;
+    double until_s;
+    cp_vehicle_state pose; /* in which it stands */
+    cp_vehicle_state last; /* as SUMO had it after the last step */
+    bool is_away;          /* SUMO had it nowhere */
+} held_vehicle;
+
 struct cp_traffic {
     const cp_traffic_source *source;
     double step_length_s;
@@ -20,6 +29,9 @@ struct cp_traffic {
     const uint32_t *departed;
     size_t departed_count;
     cp_lateral_overlays *overlays;
+    held_vehicle *held;
+    size_t held_count;
+    size_t held_room;
     cp_exposure exposure;
 };
 
@@ -53,6 +65,7 @@ void cp_traffic_destroy(cp_traffic *traffic)
     free(traffic->motions);
     free(traffic->previous);
     free(traffic->row_of);
+    free(traffic->held);
     free(traffic);
 }
 
@@ -126,11 +139,98 @@ static cp_vehicle_motion motion_to(const cp_traffic *traffic, const cp_vehicle_s
     return motion;
 }
 
+// ---- crashed vehicles that stay ------------------------------------------------------------
+
+// Whatever drivers and functions ask of a crashed car, it stands: the last command holds.
+static cp_status stop_held(cp_traffic *traffic, cp_error *error)
+{
+    const cp_traffic_source *source = traffic->source;
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < traffic->held_count; k++) {
+        uint32_t vehicle = traffic->held[k].vehicle;
+        if (traffic->row_of[vehicle] == SUMO_BRIDGE_NONE)
+            continue;
+        status = source->set_speed_mode(vehicle, 0, error);
+        if (status == CP_OK && source->set_lane_change_mode != NULL)
+            status = source->set_lane_change_mode(vehicle, 0, error);
+        if (status == CP_OK)
+            status = source->set_speed(vehicle, 0.0, error);
+    }
+    return status;
+}
+
+// After a step: standing where they crashed, and off the road when it is time or SUMO has put them
+// elsewhere.
+static cp_status keep_held(cp_traffic *traffic, cp_error *error)
+{
+    cp_status status = CP_OK;
+    size_t kept = 0;
+    for (size_t k = 0; k < traffic->held_count; k++) {
+        held_vehicle held = traffic->held[k];
+        uint32_t row = traffic->row_of[held.vehicle];
+        if (row == SUMO_BRIDGE_NONE) {
+            held.is_away = true;
+            traffic->held[kept++] = held;
+            continue;
+        }
+        cp_vehicle_motion *motion = &traffic->motions[row];
+        bool was_put =
+            held.is_away || has_jumped(&held.last, &motion->after, traffic->step_length_s);
+        held.last = motion->after;
+        *motion = (cp_vehicle_motion){.before = held.pose, .after = held.pose, .was_present = true};
+        bool is_over = was_put || traffic->time_s > held.until_s - 0.5 * traffic->step_length_s;
+        if (is_over && status == CP_OK)
+            status = cp_traffic_remove(traffic, held.vehicle, error);
+        else
+            traffic->held[kept++] = held;
+    }
+    traffic->held_count = kept;
+    return status;
+}
+
+static held_vehicle *held_of(const cp_traffic *traffic, uint32_t vehicle)
+{
+    for (size_t k = 0; k < traffic->held_count; k++)
+        if (traffic->held[k].vehicle == vehicle)
+            return &traffic->held[k];
+    return NULL;
+}
+
+bool cp_traffic_is_held(const cp_traffic *traffic, uint32_t vehicle)
+{
+    return held_of(traffic, vehicle) != NULL;
+}
+
+cp_status cp_traffic_hold(cp_traffic *traffic, uint32_t vehicle, double until_s, cp_error *error)
+{
+    if (cp_traffic_motion_of(traffic, vehicle) == NULL || cp_traffic_is_held(traffic, vehicle))
+        return CP_OK;
+    if (traffic->held_count == traffic->held_room) {
+        size_t room = traffic->held_room == 0 ? 16 : 2 * traffic->held_room;
+        held_vehicle *larger = realloc(traffic->held, room * sizeof *larger);
+        if (larger == NULL)
+            return cp_fail_memory(error, "crashed vehicles");
+        traffic->held = larger;
+        traffic->held_room = room;
+    }
+    cp_vehicle_state *state = &traffic->motions[traffic->row_of[vehicle]].after;
+    held_vehicle held = {.vehicle = vehicle, .until_s = until_s, .pose = *state, .last = *state};
+    held.pose.speed_m_s = 0.0;
+    held.pose.acceleration_m_s2 = 0.0;
+    *state = held.pose;
+    traffic->held[traffic->held_count++] = held;
+    return CP_OK;
+}
+
+// ---- the step ------------------------------------------------------------------------------
+
 cp_status cp_traffic_step(cp_traffic *traffic, cp_error *error)
 {
     const cp_vehicle_state *states;
     size_t count;
-    cp_status status = traffic->source->step(&states, &count, error);
+    cp_status status = stop_held(traffic, error);
+    if (status == CP_OK)
+        status = traffic->source->step(&states, &count, error);
     if (status != CP_OK)
         return status;
     if ((status = reserve_motions(traffic, count, error)) != CP_OK)
@@ -155,11 +255,13 @@ cp_status cp_traffic_step(cp_traffic *traffic, cp_error *error)
         traffic->row_of[traffic->previous[k].after.vehicle] = SUMO_BRIDGE_NONE;
     for (size_t k = 0; k < count; k++)
         traffic->row_of[states[k].vehicle] = (uint32_t)k;
+    traffic->time_s = traffic->source->time_s();
+    if ((status = keep_held(traffic, error)) != CP_OK)
+        return status;
 
     // Exposure: the ballistic update drives the mean of both speeds.
     double dt_s = traffic->step_length_s;
-    traffic->time_s = traffic->source->time_s();
-    for (size_t k = 0; k < count; k++) {
+    for (size_t k = 0; k < traffic->count; k++) {
         const cp_vehicle_motion *motion = &traffic->motions[k];
         if (!motion->was_present)
             continue;

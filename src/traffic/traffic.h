@@ -6,7 +6,7 @@
 #include "traffic/sumo_bridge.h"
 
 /* The step loop around the bridge: this step's and last step's states matched per vehicle,
- * exposure, removal of crashed cars. One a process. */
+ * exposure, removal of crashed cars or their standing on the road. One a process. */
 
 /* Motion of one vehicle through the step that has just ended, lateral overlays included. */
 typedef struct cp_vehicle_motion {
@@ -30,6 +30,8 @@ typedef struct cp_traffic_source {
     cp_status (*remove)(uint32_t vehicle, cp_error *error);
     cp_status (*set_speed)(uint32_t vehicle, double speed_m_s, cp_error *error);
     cp_status (*set_speed_mode)(uint32_t vehicle, int mode, cp_error *error);
+    /* May be NULL: nobody changes lanes. */
+    cp_status (*set_lane_change_mode)(uint32_t vehicle, int mode, cp_error *error);
     cp_status (*speed_mode)(uint32_t vehicle, int *mode, cp_error *error);
     cp_status (*set_speed_factor)(uint32_t vehicle, double factor_1, cp_error *error);
     cp_status (*speed_factor)(uint32_t vehicle, double *factor_1, cp_error *error);
@@ -101,5 +103,13 @@ cp_lateral_overlays *cp_traffic_overlays(const cp_traffic *traffic);
 cp_exposure cp_traffic_exposure(const cp_traffic *traffic);
 /* Take a crashed vehicle off the road now; gone already is fine. */
 CP_MUST_CHECK cp_status cp_traffic_remove(cp_traffic *traffic, uint32_t vehicle, cp_error *error);
+/* Leave a crashed vehicle where it is, standing, until the clock is at until_s; then it is removed.
+ * Its state from now on is the present pose at speed 0, in which everybody sees it; SUMO's own car
+ * is stopped by command, comes to rest within half a metre or so, and the traffic behind it brakes.
+ * A vehicle that SUMO teleports meanwhile (time-to-teleport) is removed where it reappears. Again
+ * for a held one, or for one that is gone: nothing. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_traffic_hold(cp_traffic *traffic, uint32_t vehicle, double until_s,
+                                        cp_error *error);
+bool cp_traffic_is_held(const cp_traffic *traffic, uint32_t vehicle);
 
 #endif

@@ -11,6 +11,7 @@ static const cp_traffic_source SUMO = {
     .remove = sumo_bridge_remove,
     .set_speed = sumo_bridge_set_speed,
     .set_speed_mode = sumo_bridge_set_speed_mode,
+    .set_lane_change_mode = sumo_bridge_set_lane_change_mode,
     .speed_mode = sumo_bridge_speed_mode,
     .set_speed_factor = sumo_bridge_set_speed_factor,
     .speed_factor = sumo_bridge_speed_factor,

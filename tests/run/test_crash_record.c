@@ -54,7 +54,8 @@ static cp_impact head_on(double offset_m)
     return impact;
 }
 
-static const cp_impact_names NAMES = {{"one", "two"}, {"passenger", "van"}, {true, false}};
+static const cp_impact_names NAMES = {
+    .sumo_id = {"one", "two"}, .sumo_type = {"passenger", "van"}, .at_fault = {true, false}};
 
 static void record(const cp_impact *impact, cp_result_rows *rows)
 {

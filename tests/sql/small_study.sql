@@ -112,6 +112,19 @@ INSERT INTO sumo_collision (replication_id, number, time_s, collider, victim, su
 SELECT replication_id, number, time_s, 'flow.' || 10 * number, 'flow.' || (10 * number + 1),
        'collision', 'crash' FROM crash;
 
+-- The second crash of some replications was into a car of the first.
+UPDATE crash SET is_secondary = 1, follows_crash_id = id - 1 WHERE number = 1 AND replication_id IN
+    (SELECT id FROM replication WHERE number IN (2, 5));
+UPDATE crash SET is_secondary = 1, follows_crash_id = id - 1 WHERE number = 2 AND replication_id IN
+    (SELECT id FROM replication WHERE number = 5);
+WITH RECURSIVE step(number) AS (VALUES (0) UNION ALL SELECT number + 1 FROM step WHERE number < 3)
+INSERT INTO pre_crash_sample
+SELECT v.crash_id, v.role, step.number, c.time_s - 0.02 - 0.05 * (3 - step.number),
+       v.cog_x_m + 2.0 - v.speed_m_s * (0.02 + 0.05 * (3 - step.number)), v.cog_y_m, v.yaw_rad,
+       v.speed_m_s + 0.2 * (3 - step.number), -4.0
+FROM crash_vehicle AS v JOIN crash AS c ON c.id = v.crash_id CROSS JOIN step
+WHERE c.number = 0;
+
 DROP TABLE temp.draw;
 DROP TABLE temp.invented;
 COMMIT;

@@ -40,9 +40,24 @@ static void reads_everything(void **state)
         assert_true(aeb->parameter[k] == expected);
     }
 
+    assert_true(study.stay_s == 0.0 && study.history_s == 0.0);
     assert_int_equal(study.vehicle_count, 2);
     assert_null(study.vehicles[0].type);
     assert_string_equal(study.vehicles[1].type, "van");
+    cp_study_destroy(&study);
+}
+
+static void after_a_crash_and_before_it(void **state)
+{
+    const fixture *f = *state;
+    cp_study study;
+    cp_error error = {0};
+    char *text =
+        study_with("warmup_s: 60\n", "warmup_s: 60\nhistory_s: 4.5\nafter_crash: {stay_s: 1800}\n");
+    write_text(f, "study.yaml", text);
+    free(text);
+    assert_ok(cp_study_load(f->study, &study, &error), &error);
+    assert_true(study.stay_s == 1800.0 && study.history_s == 4.5);
     cp_study_destroy(&study);
 }
 
@@ -83,6 +98,11 @@ static const struct {
     {"duration_s: 900", "duration_s: inf", "study.yaml:6: duration_s"},
     {"duration_s: 900", "duration_s: 15 min", "study.yaml:6: duration_s must be a number"},
     {"warmup_s: 60", "warmup_s: 900", "study.yaml:7: warmup_s must be less than duration_s"},
+    {"warmup_s: 60", "history_s: 61", "study.yaml:7: history_s must be between 0 and 60, found 61"},
+    {"warmup_s: 60", "after_crash: {stay_s: -1}",
+     "study.yaml:7: after_crash.stay_s must be between 0 and 86400, found -1"},
+    {"warmup_s: 60", "after_crash: {}", "Missing required mapping field: stay_s"},
+    {"warmup_s: 60", "after_crash: {stays_s: 1}", "Unexpected key: stays_s"},
     {"replications: 3", "replications: 2.5", "study.yaml:5: replications must be a whole number"},
     {"replications: 3", "replications: 0", "study.yaml:5: replications"},
     {"seed: 20261122", "seed: -1", "study.yaml:4: seed"},
@@ -182,6 +202,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(reads_everything, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(after_a_crash_and_before_it, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(baseline_can_be_named, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(counterfactual_section_and_equipment, fixture_begin,
                                         fixture_end),

@@ -103,6 +103,47 @@ static void a_crashed_car_can_be_taken_off(void **unused)
     cp_traffic_destroy(traffic);
 }
 
+static void a_crashed_car_can_stay_for_a_while(void **unused)
+{
+    (void)unused;
+    cp_traffic *traffic = create(0.1);
+    run_until(traffic, 75.0);
+    uint32_t leader = number_of(traffic, "people.0"), follower = number_of(traffic, "people.1");
+    cp_vehicle_state pose = cp_traffic_motion_of(traffic, leader)->after;
+    assert_true(pose.speed_m_s > 5.0);
+    cp_error error = {0};
+    assert_int_equal(cp_traffic_hold(traffic, leader, 100.0, &error), CP_OK);
+    assert_true(cp_traffic_is_held(traffic, leader) && !cp_traffic_is_held(traffic, follower));
+    // Again, or a vehicle that never was: nothing to do.
+    assert_int_equal(cp_traffic_hold(traffic, leader, 400.0, &error), CP_OK);
+    assert_int_equal(cp_traffic_hold(traffic, 4711, 400.0, &error), CP_OK);
+
+    // It stands from the first step on, whatever else is commanded.
+    run_until(traffic, 75.1);
+    const cp_vehicle_motion *motion = cp_traffic_motion_of(traffic, leader);
+    assert_true(motion->was_present && motion->before.speed_m_s == 0.0);
+    assert_true(motion->after.speed_m_s == 0.0 && motion->after.front_x_m == pose.front_x_m);
+    assert_int_equal(cp_traffic_commands(traffic)->set_speed(leader, 10.0, &error), CP_OK);
+    run_until(traffic, 99.8);
+    motion = cp_traffic_motion_of(traffic, leader);
+    assert_true(motion->after.front_x_m == pose.front_x_m && motion->after.speed_m_s == 0.0);
+
+    // Who follows stops behind it, and drives on when it has gone.
+    motion = cp_traffic_motion_of(traffic, follower);
+    double stop_m = motion->after.front_x_m;
+    assert_true(motion->after.speed_m_s == 0.0);
+    assert_true(stop_m < pose.front_x_m - pose.length_m + 1.0 &&
+                stop_m > pose.front_x_m - pose.length_m - 5.0);
+    run_until(traffic, 100.0);
+    assert_null(cp_traffic_motion_of(traffic, leader));
+    assert_false(cp_traffic_is_held(traffic, leader));
+    run_until(traffic, 105.0);
+    assert_true(cp_traffic_motion_of(traffic, follower)->after.front_x_m > stop_m + 5.0);
+    run_until(traffic, 400.0);
+    assert_true(cp_traffic_finished(traffic));
+    cp_traffic_destroy(traffic);
+}
+
 /* A road of one car whose next state the test sets. */
 static cp_vehicle_state scripted;
 
@@ -169,6 +210,7 @@ int main(void)
         cmocka_unit_test(exposure_is_what_was_driven),
         cmocka_unit_test(this_step_is_joined_to_the_last),
         cmocka_unit_test(a_crashed_car_can_be_taken_off),
+        cmocka_unit_test(a_crashed_car_can_stay_for_a_while),
         cmocka_unit_test(a_jump_is_no_motion),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

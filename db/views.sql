@@ -29,6 +29,19 @@ JOIN scenario AS s ON s.id = cv.scenario_id
 JOIN variant AS v ON v.id = cv.variant_id
 WHERE cv.frontal = 1;
 
+-- Which model each SUMO vehicle type crashed as, and why: chosen_by is study, sumo_type,
+-- study_default or class_and_size; without a model, reason says why (README, "Which car a SUMO
+-- vehicle crashes as").
+DROP VIEW IF EXISTS vehicle_type_model;
+CREATE VIEW vehicle_type_model AS
+SELECT s.name AS scenario, t.key AS sumo_type, t.value ->> 'model' AS vehicle_model,
+       t.value ->> 'chosen_by' AS chosen_by, t.value ->> 'reason' AS reason,
+       count(*) AS replications
+FROM replication AS r
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN json_each(r.crash_options, '$.vehicle_types') AS t
+GROUP BY s.number, t.key, vehicle_model, chosen_by, reason;
+
 -- Every vehicle of every crash, struck on whichever side: what --where and --by of 'crashpulse
 -- compare' choose from.
 DROP VIEW IF EXISTS crash_vehicle_list;

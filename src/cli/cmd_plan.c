@@ -81,7 +81,7 @@ static cp_status make_plan(const char *path, planned *p, cp_error *error)
     if (status == CP_OK)
         status = cp_fleet_load(&p->study, &p->fleet, error);
     if (status == CP_OK)
-        status = cp_plan_create(&p->study, p->fleet.rows, &p->rows, error);
+        status = cp_plan_create(&p->study, p->fleet.rows, p->fleet.count, &p->rows, error);
     return status;
 }
 

@@ -45,6 +45,8 @@ unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *mo
     // A model without a calibrated range has no other limits to be within.
     if (!calibrated)
         outside |= CP_OUTSIDE_MODEL;
+    if (own->is_stretched)
+        outside |= CP_OUTSIDE_SIZE;
     if (fabs(description->velocity_angle_rad[role]) > cp_rad_from_deg(OBLIQUE_LIMIT_DEG) + ROUNDING)
         outside |= CP_OUTSIDE_OBLIQUE_VELOCITY;
 

@@ -16,7 +16,9 @@
     X(CP_OUTSIDE_CONTACT_SIDE, 4, "contact_side")                                                  \
     X(CP_OUTSIDE_OPPONENT_STRUCTURE, 5, "opponent_structure")                                      \
     X(CP_OUTSIDE_MODEL, 6, "model")                                                                \
-    X(CP_OUTSIDE_DAMAGED, 7, "damaged")
+    X(CP_OUTSIDE_DAMAGED, 7, "damaged")                                                            \
+    X(CP_OUTSIDE_NO_MODEL, 8, "no_model")                                                          \
+    X(CP_OUTSIDE_SIZE, 9, "size")
 
 enum {
 #define CP_VALIDITY_NAME(name, bit, text) name = 1u << bit,
@@ -30,8 +32,8 @@ enum {
  * barrier has infinite mass), offset and angle by the calibrated range, oblique velocity beyond
  * 15 degrees (an assumption, stated as one), side struck other than front, opponent struck other
  * than on its front, model never calibrated. Offset and angle of role 1 are those seen from it.
- * (damaged, one of the two had crashed before, is the caller's to add: the configuration does not
- * tell.) */
+ * size: the model's outline was stretched. no_model and damaged (one of the two had crashed before)
+ * are the caller's to add: the configuration does not tell. */
 unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
                      const cp_crash_configuration *configuration,
                      const cp_crash_description *description, int role);

@@ -31,6 +31,17 @@ cp_vehicle_model cp_vehicle_model_default(void)
     return model;
 }
 
+cp_vehicle_model cp_vehicle_model_cover(const cp_vehicle_model *model, double length_m,
+                                        double width_m)
+{
+    cp_vehicle_model covering = *model;
+    covering.length_m = fmax(model->length_m, length_m);
+    covering.width_m = fmax(model->width_m, width_m);
+    covering.is_stretched = covering.length_m > model->length_m + CP_VEHICLE_STRETCHED_LENGTH_M ||
+                            covering.width_m > model->width_m + CP_VEHICLE_STRETCHED_WIDTH_M;
+    return covering;
+}
+
 double cp_vehicle_model_get(const cp_vehicle_model *model, size_t index)
 {
     double value = 0.0;

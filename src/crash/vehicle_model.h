@@ -102,6 +102,7 @@ typedef struct cp_vehicle_model {
     double calibrated_offset_max_m; /* to either side */
     double calibrated_angle_max_rad;
     cp_barrier barrier; /* of the study it was calibrated against */
+    bool is_stretched;  /* its outline, far beyond that of the car (cp_vehicle_model_cover) */
     /* Relative standard deviation of each parameter, 0 = certain; in the order of the table. */
     double scatter_1[CP_VEHICLE_PARAMETER_TOTAL];
     /* Bounds of each parameter: the file's own, else the table's. */
@@ -141,6 +142,15 @@ CP_MUST_CHECK cp_status cp_vehicle_model_load(const char *path, cp_vehicle_model
 /* The same from memory; name stands for the path in messages. */
 CP_MUST_CHECK cp_status cp_vehicle_model_parse(const char *name, const char *content, size_t size,
                                                cp_vehicle_model *model, cp_error *error);
+
+/* The model with an outline that covers a rectangle of that length and width, front on front: where
+ * the rectangle is longer the body goes on behind, where it is wider sides and outboard corners
+ * move out. Mass, inertia and front structure stay. So what touches as rectangles touches as
+ * models. By more than 0.6 m or 0.2 m the model says that it is stretched. */
+#define CP_VEHICLE_STRETCHED_LENGTH_M 0.6
+#define CP_VEHICLE_STRETCHED_WIDTH_M 0.2
+cp_vehicle_model cp_vehicle_model_cover(const cp_vehicle_model *model, double length_m,
+                                        double width_m);
 
 /* The largest time step the explicit force elements of the model stand: their fastest oscillation
  * turns 1.2 rad in it. element (may be NULL) receives what sets it, static text. */

@@ -327,7 +327,9 @@ static cp_status read_about(cp_store *store, cp_study_data *data, cp_error *erro
         {"study", "SELECT * FROM study"},
         {"versions", "SELECT crashpulse_version, sumo_version, count(*) AS replications"
                      " FROM replication WHERE status = 'done' GROUP BY 1, 2 ORDER BY 1, 2"},
-        {"vehicle_models", "SELECT name, hash FROM vehicle_model ORDER BY name"},
+        {"vehicle_models",
+         "SELECT name, hash FROM vehicle_model WHERE name IN (SELECT DISTINCT vehicle_model FROM "
+         "crash_vehicle) ORDER BY name"},
         {"scenarios", "SELECT name, sumocfg, sumo_options, driver_errors FROM scenario"
                       " ORDER BY number"},
         {"variants", "SELECT name, is_baseline, functions FROM variant ORDER BY number"},

@@ -10,6 +10,7 @@
  * other crash its time and two ids. */
 typedef struct answer_head {
     cp_found_contact found;
+    cp_sumo_type type[2];
     size_t sample_count;
     size_t other_count;
     bool has_crash;
@@ -33,6 +34,12 @@ bool cp_branch_answer_send(int to, const cp_found_contact *first, const cp_sampl
         .sample_count = sample_count, .other_count = other_count, .has_crash = first != NULL};
     if (first != NULL)
         head.found = *first;
+    for (int role = 0; first != NULL && role < 2; role++) {
+        cp_error error = {0};
+        if (sumo_bridge_type(sumo_bridge_type_id(first->impact.state[role].type), &head.type[role],
+                             &error) != CP_OK)
+            return false;
+    }
     bool sent = cp_branch_write(to, &head, sizeof head);
     if (sent && sample_count > 0)
         sent = cp_branch_write(to, sample, sample_count * sizeof *sample);
@@ -71,6 +78,7 @@ bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *ans
         return false;
     *answer = (cp_branch_answer){.has_crash = head.has_crash,
                                  .found = head.found,
+                                 .type = {head.type[0], head.type[1]},
                                  .sample = (const cp_sample_row *)(const void *)at,
                                  .sample_count = head.sample_count,
                                  .other_count = head.other_count};

@@ -39,6 +39,7 @@ typedef struct cp_branch_answer {
     cp_found_contact found; /* its first; by the branch's numbers */
     const char *ids[2];     /* by role of found */
     const char *types[2];
+    cp_sumo_type type[2];
     const cp_sample_row *sample;
     size_t sample_count;
     size_t other_count;

@@ -465,6 +465,7 @@ static void keep_roles(cp_branch_answer *answer, const char *const ids[2])
     SWAP(bool, answer->found.had_crashed);
     SWAP(const char *, answer->ids);
     SWAP(const char *, answer->types);
+    SWAP(cp_sumo_type, answer->type);
 #undef SWAP
 }
 
@@ -507,13 +508,14 @@ static bool is_same_pulse(const cp_crash_vehicle_row *one, const cp_crash_vehicl
            (one->pulse_size == 0 || memcmp(one->pulse, other->pulse, one->pulse_size) == 0);
 }
 
-static cp_status fill_crash(const cp_branch_answer *answer, const cp_fleet *fleet,
-                            cp_crash_row *row, cp_error *error)
+static cp_status fill_crash(const cp_simulation *simulation, const cp_branch_answer *answer,
+                            const cp_fleet *fleet, cp_crash_row *row, cp_error *error)
 {
-    cp_impact_names names;
+    cp_impact_names names = {.sumocfg_path = simulation->sumocfg_path};
     for (int role = 0; role < 2; role++) {
         names.sumo_id[role] = answer->ids[role];
         names.sumo_type[role] = answer->types[role];
+        names.type[role] = answer->type[role];
         names.at_fault[role] = answer->found.at_fault[role];
         names.had_crashed[role] = answer->found.had_crashed[role];
     }
@@ -571,7 +573,7 @@ static cp_status compare_null(const pair_view *view, const cp_branch_answer *ans
         return CP_OK;
     }
     cp_crash_row again = {0};
-    cp_status status = fill_crash(answer, view->fleet, &again, error);
+    cp_status status = fill_crash(view->self->simulation, answer, view->fleet, &again, error);
     if (status == CP_OK && is_same_pulse(&again.vehicle[0], &view->crash->vehicle[0]) &&
         is_same_pulse(&again.vehicle[1], &view->crash->vehicle[1]))
         row->status = CP_NULL_REPRODUCED;
@@ -649,7 +651,8 @@ static cp_status judge(const pair_view *view, cp_branch_answer *answer, cp_count
     if (!answer->has_crash)
         return CP_OK;
     keep_roles(answer, view->ids);
-    cp_status status = fill_crash(answer, view->fleet, &row->treated, error);
+    cp_status status =
+        fill_crash(view->self->simulation, answer, view->fleet, &row->treated, error);
     row->has_crash = status == CP_OK;
     row->outcome = row->outcome_olc = CP_OUTCOME_CHANGED_OPPONENT;
     if (status != CP_OK || !is_same_pair(answer->ids, view->ids))

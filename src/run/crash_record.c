@@ -6,6 +6,7 @@
 #include "pulse/pulse_codec.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,17 +24,59 @@ static const cp_severity NO_SEVERITY = {
     .pdof_rad = NAN,
     .yaw_change_rad_s = NAN};
 
+/* What one vehicle crashes as. */
+typedef struct stand_in {
+    cp_fleet_choice choice;
+    cp_vehicle_model model; /* covers SUMO's rectangle; without a choice only its outline counts */
+} stand_in;
+
+static cp_status choose(const cp_impact *impact, const cp_impact_names *names,
+                        const cp_fleet *fleet, int role, stand_in *car, cp_error *error)
+{
+    const cp_vehicle_state *state = &impact->state[role];
+    cp_status status = cp_fleet_choose(fleet, names->sumocfg_path, names->sumo_type[role],
+                                       &names->type[role], &car->choice, error);
+    if (status != CP_OK)
+        return status;
+    const cp_vehicle_model *chosen = car->choice.model;
+    if (chosen == NULL) {
+        car->model = cp_vehicle_model_default();
+        car->model.length_m = state->length_m;
+        car->model.width_m = state->width_m;
+        car->model.cg_to_front_m = 0.42 * state->length_m;
+        return CP_OK;
+    }
+    car->model = cp_vehicle_model_cover(chosen, state->length_m, state->width_m);
+    return CP_OK;
+}
+
+// What is outside of the calibrated range; of a vehicle without a model nothing else is known.
+static unsigned outside_of(const stand_in cars[2], const cp_crash_configuration *configuration,
+                           const cp_crash_description *description, int role)
+{
+    unsigned outside =
+        cp_validity(&cars[0].model, &cars[1].model, configuration, description, role);
+    if (cars[role].choice.model == NULL)
+        return (outside & CP_OUTSIDE_CONTACT_SIDE) | CP_OUTSIDE_NO_MODEL;
+    if (cars[1 - role].choice.model == NULL)
+        outside |= CP_OUTSIDE_OPPONENT_STRUCTURE;
+    return outside;
+}
+
 static cp_status fill_vehicle(const cp_impact *impact, const cp_impact_names *names,
-                              const cp_vehicle_model *const models[2],
-                              const cp_crash_configuration *configuration, int role,
-                              cp_crash_row *row, cp_error *error)
+                              const stand_in cars[2], const cp_crash_configuration *configuration,
+                              int role, cp_crash_row *row, cp_error *error)
 {
     cp_crash_vehicle_row *vehicle = &row->vehicle[role];
+    const cp_fleet_choice *choice = &cars[role].choice;
     vehicle->sumo_id = strdup(names->sumo_id[role]);
     vehicle->sumo_type = strdup(names->sumo_type[role]);
-    vehicle->vehicle_model = strdup(models[role]->name);
+    vehicle->vehicle_model =
+        strdup(choice->model != NULL ? choice->model->name : CP_NO_VEHICLE_MODEL);
     if (vehicle->sumo_id == NULL || vehicle->sumo_type == NULL || vehicle->vehicle_model == NULL)
         return cp_fail_memory(error, "crash");
+    vehicle->chosen_by = choice->chosen_by;
+    snprintf(vehicle->no_model_reason, sizeof vehicle->no_model_reason, "%s", choice->reason);
     vehicle->at_fault = names->at_fault[role];
     vehicle->body = configuration->vehicle[role];
     vehicle->speed_m_s = row->description.speed_m_s[role];
@@ -41,7 +84,7 @@ static cp_status fill_vehicle(const cp_impact *impact, const cp_impact_names *na
     vehicle->width_m = impact->state[role].width_m;
     vehicle->velocity_angle_rad = row->description.velocity_angle_rad[role];
     vehicle->side = impact->side[role];
-    vehicle->outside = cp_validity(models[0], models[1], configuration, &row->description, role);
+    vehicle->outside = outside_of(cars, configuration, &row->description, role);
     if (names->had_crashed[0] || names->had_crashed[1])
         vehicle->outside |= CP_OUTSIDE_DAMAGED;
     vehicle->severity = NO_SEVERITY;
@@ -62,14 +105,13 @@ static cp_status keep_pulse(const cp_pulse *raw, cp_crash_vehicle_row *vehicle, 
 }
 
 // Run the surrogate and take over what it says of both cars.
-static cp_status simulate(const cp_vehicle_model *const models[2],
-                          const cp_crash_configuration *configuration, cp_crash_row *row,
-                          cp_error *error)
+static cp_status simulate(const stand_in cars[2], const cp_crash_configuration *configuration,
+                          cp_crash_row *row, cp_error *error)
 {
     cp_crash_options options = cp_crash_options_default();
     cp_crash_result result = {0};
     cp_status status =
-        cp_crash_simulate(models[0], models[1], configuration, &options, &result, error);
+        cp_crash_simulate(&cars[0].model, &cars[1].model, configuration, &options, &result, error);
     if (status == CP_OK && !result.touched)
         status = cp_fail(error, CP_CRASH_FAILED, "the outlines of the two models never met");
     for (int role = 0; status == CP_OK && role < 2; role++)
@@ -98,39 +140,54 @@ static void drop_sign_of_zero(cp_body_state *body)
     body->yaw_rate_rad_s += 0.0;
 }
 
+// A crash that cannot be simulated has happened all the same: it stays, without a severity.
+static cp_status simulate_if_possible(const cp_impact *impact, const cp_impact_names *names,
+                                      const stand_in cars[2],
+                                      const cp_crash_configuration *configuration,
+                                      cp_crash_row *row, cp_error *error)
+{
+    cp_error failure = {0};
+    if (cars[0].choice.model == NULL || cars[1].choice.model == NULL)
+        return CP_OK;
+    cp_status status = simulate(cars, configuration, row, &failure);
+    if (status == CP_NO_MEMORY)
+        return cp_fail_memory(error, "crash simulation");
+    if (status == CP_OK)
+        return CP_OK;
+    cp_log_warning("crash of %s and %s at %.2f s cannot be simulated: %s", names->sumo_id[0],
+                   names->sumo_id[1], impact->time_s, failure.text);
+    for (int role = 0; role < 2; role++) {
+        free(row->vehicle[role].pulse);
+        row->vehicle[role].pulse = NULL;
+    }
+    return CP_OK;
+}
+
 cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *names,
                                const cp_fleet *fleet, cp_crash_row *row, cp_error *error)
 {
-    const cp_vehicle_model *const models[2] = {cp_fleet_model(fleet, names->sumo_type[0]),
-                                               cp_fleet_model(fleet, names->sumo_type[1])};
-    cp_crash_configuration configuration = cp_impact_configuration(impact, models[0], models[1]);
+    stand_in cars[2] = {0};
+    cp_status status = CP_OK;
+    for (int role = 0; status == CP_OK && role < 2; role++)
+        status = choose(impact, names, fleet, role, &cars[role], error);
+    if (status != CP_OK)
+        return status;
+    cp_crash_configuration configuration =
+        cp_impact_configuration(impact, &cars[0].model, &cars[1].model);
     for (int role = 0; role < 2; role++)
         drop_sign_of_zero(&configuration.vehicle[role]);
     row->time_s = impact->time_s;
     row->is_secondary = names->had_crashed[0] || names->had_crashed[1];
     row->follows = CP_FOLLOWS_NONE;
     row->contact_m = impact->contact_m;
-    row->description = cp_impact_describe(impact, models[0], models[1]);
+    row->description = cp_impact_describe(impact, &cars[0].model, &cars[1].model);
     row->t_common_s = row->separation_s = row->shift_m = NAN;
-    cp_status status = CP_OK;
     for (int role = 0; status == CP_OK && role < 2; role++)
-        status = fill_vehicle(impact, names, models, &configuration, role, row, error);
+        status = fill_vehicle(impact, names, cars, &configuration, role, row, error);
+    if (status == CP_OK)
+        status = simulate_if_possible(impact, names, cars, &configuration, row, error);
     if (status != CP_OK)
         return status;
-
-    // A crash that cannot be simulated has happened all the same: it stays, without a severity.
-    cp_error failure = {0};
-    status = simulate(models, &configuration, row, &failure);
-    if (status == CP_NO_MEMORY)
-        return cp_fail_memory(error, "crash simulation");
-    if (status != CP_OK) {
-        cp_log_warning("crash of %s and %s at %.2f s cannot be simulated: %s", names->sumo_id[0],
-                       names->sumo_id[1], impact->time_s, failure.text);
-        for (int role = 0; role < 2; role++) {
-            free(row->vehicle[role].pulse);
-            row->vehicle[role].pulse = NULL;
-        }
-    }
 
     // OLC speaks of frontal contact only.
     for (int role = 0; role < 2; role++)

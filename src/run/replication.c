@@ -75,12 +75,15 @@ static cp_status record_crash(replication_run *run, const cp_found_contact *foun
 {
     cp_simulation *simulation = &run->simulation;
     const cp_impact *impact = &found->impact;
-    cp_impact_names names;
+    cp_impact_names names = {.sumocfg_path = run->simulation.sumocfg_path};
     for (int role = 0; role < 2; role++) {
         names.sumo_id[role] = sumo_bridge_vehicle_id(impact->vehicle[role]);
         names.sumo_type[role] = sumo_bridge_type_id(impact->state[role].type);
         names.at_fault[role] = found->at_fault[role];
         names.had_crashed[role] = found->had_crashed[role];
+        cp_status status = sumo_bridge_type(names.sumo_type[role], &names.type[role], error);
+        if (status != CP_OK)
+            return status;
     }
     cp_crash_row *row = cp_result_rows_add_crash(run->results);
     if (row == NULL)

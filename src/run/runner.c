@@ -98,7 +98,7 @@ static cp_status load_inputs(runner *run, cp_error *error)
     if (status == CP_OK)
         status = cp_fleet_load(&run->study, &run->fleet, error);
     if (status == CP_OK)
-        status = cp_plan_create(&run->study, run->fleet.rows, &run->plan, error);
+        status = cp_plan_create(&run->study, run->fleet.rows, run->fleet.count, &run->plan, error);
     run->time_limit_s = run->options->time_limit_s;
     if (run->time_limit_s <= 0.0)
         run->time_limit_s = fmax(SHORTEST_TIME_LIMIT_S, 10.0 * run->study.duration_s);

@@ -41,7 +41,7 @@ cp_status cp_simulation_begin(const cp_study *study, const cp_study_scenario *sc
                               cp_simulation *simulation, cp_error *error)
 {
     cp_sumo_words words;
-    *simulation = (cp_simulation){0};
+    *simulation = (cp_simulation){.sumocfg_path = scenario->sumocfg_path};
     cp_status status = cp_sumo_words_create(scenario, variant, seed, study->stay_s, &words, error);
     if (status != CP_OK)
         return status;

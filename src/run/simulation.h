@@ -33,6 +33,7 @@ typedef struct cp_found_history {
 
 /* Zero-initialise, begin, step, end. */
 typedef struct cp_simulation {
+    const char *sumocfg_path; /* of the scenario; borrowed */
     cp_traffic *traffic;
     cp_controls *controls; /* drivers and functions of the variant; in a branch the treatment too */
     cp_detector *detector;

@@ -7,6 +7,7 @@
 #include "run/fleet.h"
 #include "run/owner.h"
 #include "run/replication.h"
+#include "run/vehicle_types.h"
 #include "store/claim.h"
 #include "store/stored_crash.h"
 
@@ -50,6 +51,8 @@ static cp_status run_claimed(const cp_study *study, const cp_fleet *fleet,
     status = results.crash_options != NULL
                  ? cp_replication_run(study, fleet, replication, &results, error)
                  : cp_fail_memory(error, "crash options");
+    if (status == CP_OK)
+        status = cp_vehicle_types_add(&results, error);
     cp_crash_library_end();
     results.wall_time_s = cp_clock_s() - started_s;
     if (status == CP_OK)
@@ -70,7 +73,7 @@ cp_status cp_worker_run(const char *study_path, const char *db_path, int64_t rep
     if (status == CP_OK)
         status = cp_fleet_load(&study, &fleet, error);
     if (status == CP_OK)
-        status = cp_plan_create(&study, fleet.rows, &plan, error);
+        status = cp_plan_create(&study, fleet.rows, fleet.count, &plan, error);
     if (status != CP_OK)
         goto done;
 

@@ -17,6 +17,8 @@ typedef struct cp_crash_vehicle_row {
     char *sumo_id;
     char *sumo_type;
     char *vehicle_model;
+    const char *chosen_by;     /* static text: why this model; "" without one */
+    char no_model_reason[160]; /* why none; "" with one */
     bool at_fault;
     cp_body_state body; /* at first contact, world */
     double speed_m_s;
@@ -89,7 +91,7 @@ typedef struct cp_result_rows {
     double vehicle_h;
     size_t departed;
     char *counters;      /* JSON */
-    char *crash_options; /* JSON: cp_crash_options_json */
+    char *crash_options; /* JSON: cp_crash_options_json and the vehicle types */
     double wall_time_s;
     cp_crash_row *crash; /* in order of time, then ids: their numbers */
     size_t crash_count;

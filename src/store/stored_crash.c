@@ -90,8 +90,11 @@ static cp_status take_side(const char *text, cp_contact_side *side, cp_error *er
 
 static const char READ_VEHICLE[] =
     "SELECT v.cog_x_m, v.cog_y_m, v.yaw_rad, v.velocity_x_m_s, v.velocity_y_m_s, v.yaw_rate_rad_s, "
-    "v.speed_m_s, v.velocity_angle_rad, v.contact_side, v.sumo_id, v.vehicle_model, m.yaml "
+    "v.speed_m_s, v.velocity_angle_rad, v.contact_side, v.sumo_id, v.vehicle_model, m.yaml, "
+    "v.length_m, v.width_m, coalesce(r.crash_options ->> 'covers_outline', 0), v.sumo_type, "
+    "instr(',' || v.validity || ',', ',no_model,') > 0 "
     "FROM crash_vehicle AS v JOIN vehicle_model AS m ON m.name = v.vehicle_model "
+    "JOIN crash AS c ON c.id = v.crash_id JOIN replication AS r ON r.id = c.replication_id "
     "WHERE v.crash_id = ?1 AND v.role = ?2";
 
 static cp_status read_vehicle(cp_store *store, int role, cp_stored_crash *crash, cp_error *error)
@@ -118,6 +121,10 @@ static cp_status read_vehicle(cp_store *store, int role, cp_stored_crash *crash,
     crash->description.velocity_angle_rad[role] = real_or_nan(&s, 7);
     snprintf(crash->sumo_id[role], sizeof crash->sumo_id[role], "%s", text_of(&s, 9));
     status = take_side(text_of(&s, 8), &crash->configuration.side[role], error);
+    if (status == CP_OK && sqlite3_column_int(s.handle, 16))
+        status = cp_fail(error, CP_BAD_INPUT,
+                         "%s: crash %lld was not simulated: vehicle %s, of type %s, has no model",
+                         cp_store_path(store), (long long)crash->id, ROLE[role], text_of(&s, 15));
     if (status == CP_OK) {
         char name[256];
         snprintf(name, sizeof name, "%.100s: vehicle_model %.64s", cp_store_path(store),
@@ -126,6 +133,11 @@ static cp_status read_vehicle(cp_store *store, int role, cp_stored_crash *crash,
                                         (size_t)sqlite3_column_bytes(s.handle, 11),
                                         &crash->model[role], error);
     }
+    // As it was simulated; rows of earlier versions have the model's own outline.
+    if (status == CP_OK && sqlite3_column_int(s.handle, 14))
+        crash->model[role] =
+            cp_vehicle_model_cover(&crash->model[role], sqlite3_column_double(s.handle, 12),
+                                   sqlite3_column_double(s.handle, 13));
 done:
     cp_statement_finish(&s);
     return status;

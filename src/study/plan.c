@@ -77,7 +77,7 @@ static char *vehicles_text(const cp_study *study, const cp_vehicle_model_row *mo
     json_t *types = json_object();
     for (size_t k = 1; k < study->vehicle_count; k++)
         json_object_set_new(types, study->vehicles[k].type, json_string(models[k].name));
-    return take_text(json_pack("{s:s, s:o}", "default", models[0].name, "types", types));
+    return take_text(json_pack("{s:s?, s:o}", "default", models[0].name, "types", types));
 }
 
 // ---- rows ----------------------------------------------------------------------------------
@@ -197,12 +197,14 @@ static cp_status fill_variants(const cp_study *study, cp_plan_rows *rows, cp_err
 
 // Each model once; the same name for two different cars would mix them up in the database.
 static cp_status fill_vehicle_models(const cp_study *study, const cp_vehicle_model_row *models,
-                                     cp_plan_rows *rows, cp_error *error)
+                                     size_t model_count, cp_plan_rows *rows, cp_error *error)
 {
-    rows->vehicle_model = calloc(study->vehicle_count, sizeof *rows->vehicle_model);
+    rows->vehicle_model = calloc(model_count, sizeof *rows->vehicle_model);
     if (rows->vehicle_model == NULL)
         return cp_fail_memory(error, "vehicles");
-    for (size_t k = 0; k < study->vehicle_count; k++) {
+    for (size_t k = 0; k < model_count; k++) {
+        if (models[k].name == NULL)
+            continue;
         size_t known = 0;
         while (known < rows->vehicle_model_count &&
                strcmp(rows->vehicle_model[known].name, models[k].name) != 0)
@@ -212,7 +214,10 @@ static cp_status fill_vehicle_models(const cp_study *study, const cp_vehicle_mod
             if (strcmp(row->hash, models[k].hash) != 0)
                 return cp_fail(error, CP_BAD_INPUT,
                                "%s: the name '%s' belongs to another vehicle file of the study too",
-                               study->vehicles[k].model_path, models[k].name);
+                               k < study->vehicle_count && study->vehicles[k].model_path != NULL
+                                   ? study->vehicles[k].model_path
+                                   : study->path,
+                               models[k].name);
             continue;
         }
         *row = models[k];
@@ -247,14 +252,13 @@ static json_t *counterfactual_json(const cp_study *study, const cp_plan_rows *ro
 }
 
 // SHA-256 over all that the outcome of a replication depends on, as JSON.
-static cp_status hash_configuration(const cp_study *study, const cp_vehicle_model_row *models,
-                                    const cp_plan_rows *rows, cp_replication_row *replication,
-                                    cp_error *error)
+static cp_status hash_configuration(const cp_study *study, const cp_plan_rows *rows,
+                                    cp_replication_row *replication, cp_error *error)
 {
     const cp_scenario_row *scenario = &rows->scenario[replication->scenario];
     json_t *hashes = json_array();
-    for (size_t k = 0; k < study->vehicle_count; k++)
-        json_array_append_new(hashes, json_string(models[k].hash));
+    for (size_t k = 0; k < rows->vehicle_model_count; k++)
+        json_array_append_new(hashes, json_string(rows->vehicle_model[k].hash));
     json_t *configuration = json_pack(
         "{s:I, s:I, s:f, s:f, s:f, s:s, s:s, s:s, s:s, s:s, s:o}", "study_seed",
         (json_int_t)study->seed, "seed", (json_int_t)replication->seed, "duration_s",
@@ -276,8 +280,7 @@ static cp_status hash_configuration(const cp_study *study, const cp_vehicle_mode
     return CP_OK;
 }
 
-static cp_status fill_replications(const cp_study *study, const cp_vehicle_model_row *models,
-                                   cp_plan_rows *rows, cp_error *error)
+static cp_status fill_replications(const cp_study *study, cp_plan_rows *rows, cp_error *error)
 {
     size_t total = study->scenario_count * study->variant_count * study->replications;
     rows->replication = calloc(total, sizeof *rows->replication);
@@ -293,7 +296,7 @@ static cp_status fill_replications(const cp_study *study, const cp_vehicle_model
         row->seed = cp_plan_seed(study, row->scenario, row->variant, row->number);
         row->id = cp_replication_row_id(study->scenarios[row->scenario].name,
                                         study->variants[row->variant].name, "", row->seed);
-        cp_status status = hash_configuration(study, models, rows, row, error);
+        cp_status status = hash_configuration(study, rows, row, error);
         if (status != CP_OK)
             return status;
         rows->replication_count++;
@@ -304,7 +307,7 @@ static cp_status fill_replications(const cp_study *study, const cp_vehicle_model
 // ---- public --------------------------------------------------------------------------------
 
 cp_status cp_plan_create(const cp_study *study, const cp_vehicle_model_row *models,
-                         cp_plan_rows *rows, cp_error *error)
+                         size_t model_count, cp_plan_rows *rows, cp_error *error)
 {
     *rows = (cp_plan_rows){0};
     cp_status status = fill_study(study, models, &rows->study, error);
@@ -315,9 +318,9 @@ cp_status cp_plan_create(const cp_study *study, const cp_vehicle_model_row *mode
     if (status == CP_OK)
         status = fill_sweeps(study, rows, error);
     if (status == CP_OK)
-        status = fill_vehicle_models(study, models, rows, error);
+        status = fill_vehicle_models(study, models, model_count, rows, error);
     if (status == CP_OK)
-        status = fill_replications(study, models, rows, error);
+        status = fill_replications(study, rows, error);
     if (status != CP_OK)
         cp_plan_destroy(rows);
     return status;

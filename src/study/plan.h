@@ -8,11 +8,12 @@
 /* Every replication of a study: scenarios x variants x seeds, each with its row id and the hash of
  * everything its outcome depends on. */
 
-/* models: one row for each of study->vehicles, in that order (two may be the same model); copied.
- * The caller destroys the rows. Errors: CP_BAD_INPUT for two models of one name that differ, or a
+/* models: one row for each of study->vehicles, in that order (two may be the same model; the first
+ * has no name when the study has no default), then any others that its crashes may use; copied. The
+ * caller destroys the rows. Errors: CP_BAD_INPUT for two models of one name that differ, or a
  * file that cannot be read; CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_plan_create(const cp_study *study, const cp_vehicle_model_row *models,
-                                       cp_plan_rows *rows, cp_error *error);
+                                       size_t model_count, cp_plan_rows *rows, cp_error *error);
 void cp_plan_destroy(cp_plan_rows *rows);
 
 /* Seed of replication number of a scenario and variant: a pure function of the study's seed and the

@@ -33,9 +33,13 @@ static void remove_comments(char *text)
     *to = '\0';
 }
 
+/* What is done with every input file: path to open, name as it was given. */
+typedef cp_status visit_file(const char *path, const char *name, void *context, cp_error *error);
+
 // Hash of one file into the object under the name it was given.
-static cp_status add_file(json_t *files, const char *path, const char *name, cp_error *error)
+static cp_status add_file(const char *path, const char *name, void *context, cp_error *error)
 {
+    json_t *files = context;
     char *content = NULL;
     size_t size = 0;
     char hex[CP_HASH_TEXT_SIZE];
@@ -54,8 +58,8 @@ static cp_status add_file(json_t *files, const char *path, const char *name, cp_
 }
 
 // The files of a comma-separated list, as seen from the .sumocfg.
-static cp_status add_list(json_t *files, const char *sumocfg_path, const char *list, size_t length,
-                          cp_error *error)
+static cp_status visit_list(visit_file *visit, void *context, const char *sumocfg_path,
+                            const char *list, size_t length, cp_error *error)
 {
     char *names = strndup(list, length);
     if (names == NULL)
@@ -68,7 +72,7 @@ static cp_status add_list(json_t *files, const char *sumocfg_path, const char *l
         if (path == NULL)
             status = cp_fail_memory(error, name);
         else if (access(path, R_OK) == 0)
-            status = add_file(files, path, name, error);
+            status = visit(path, name, context, error);
         free(path);
     }
     free(names);
@@ -83,15 +87,19 @@ static bool is_input(const char *element, size_t length)
     return false;
 }
 
-// Value of the attribute value="..." (or v="...") within one tag; NULL when it has none.
-static const char *find_value(const char *tag, const char *tag_end, size_t *length)
+// Value of an attribute within one tag, by its name or a synonym; NULL when it has none.
+static const char *find_attribute(const char *tag, const char *tag_end, const char *attribute,
+                                  const char *synonym, size_t *length)
 {
+    size_t long_name = strlen(attribute), short_name = strlen(synonym);
     for (const char *c = tag; c < tag_end; c++) {
         if (!isspace((unsigned char)*c))
             continue;
         while (c < tag_end && isspace((unsigned char)*c))
             c++;
-        size_t name = strncmp(c, "value", 5) == 0 ? 5 : strncmp(c, "v", 1) == 0 ? 1 : 0;
+        size_t name = strncmp(c, attribute, long_name) == 0  ? long_name
+                      : strncmp(c, synonym, short_name) == 0 ? short_name
+                                                             : 0;
         const char *quote = c + name + 1;
         if (name == 0 || c[name] != '=' || (*quote != '"' && *quote != '\''))
             continue;
@@ -104,8 +112,9 @@ static const char *find_value(const char *tag, const char *tag_end, size_t *leng
     return NULL;
 }
 
-static cp_status add_inputs(json_t *files, const char *sumocfg_path, const char *content,
-                            cp_error *error)
+// All inputs that the text of a .sumocfg names.
+static cp_status visit_inputs(visit_file *visit, void *context, const char *sumocfg_path,
+                              const char *content, cp_error *error)
 {
     cp_status status = CP_OK;
     for (const char *tag = strchr(content, '<'); tag != NULL && status == CP_OK;
@@ -116,34 +125,96 @@ static cp_status add_inputs(json_t *files, const char *sumocfg_path, const char 
         size_t length = 0;
         if (end == NULL || !is_input(name, name_length))
             continue;
-        const char *list = find_value(name + name_length, end, &length);
+        const char *list = find_attribute(name + name_length, end, "value", "v", &length);
         if (list != NULL)
-            status = add_list(files, sumocfg_path, list, length, error);
+            status = visit_list(visit, context, sumocfg_path, list, length, error);
     }
+    return status;
+}
+
+static cp_status visit_scenario(visit_file *visit, void *context, const char *sumocfg_path,
+                                cp_error *error)
+{
+    char *content = NULL;
+    size_t size = 0;
+    cp_status status = cp_file_read(sumocfg_path, &content, &size, error);
+    if (status != CP_OK)
+        return status;
+    remove_comments(content);
+    status = visit_inputs(visit, context, sumocfg_path, content, error);
+    free(content);
     return status;
 }
 
 cp_status cp_scenario_files_json(const char *sumocfg_path, char **json, cp_error *error)
 {
-    char *content = NULL;
-    size_t size = 0;
     json_t *files = json_object();
     const char *slash = strrchr(sumocfg_path, '/');
     cp_status status = files != NULL ? CP_OK : cp_fail_memory(error, sumocfg_path);
     if (status == CP_OK)
-        status = cp_file_read(sumocfg_path, &content, &size, error);
+        status = add_file(sumocfg_path, slash != NULL ? slash + 1 : sumocfg_path, files, error);
     if (status == CP_OK)
-        status = add_file(files, sumocfg_path, slash != NULL ? slash + 1 : sumocfg_path, error);
-    if (status == CP_OK) {
-        remove_comments(content);
-        status = add_inputs(files, sumocfg_path, content, error);
-    }
+        status = visit_scenario(add_file, files, sumocfg_path, error);
     if (status == CP_OK) {
         *json = json_dumps(files, JSON_SORT_KEYS | JSON_COMPACT);
         if (*json == NULL)
             status = cp_fail_memory(error, sumocfg_path);
     }
-    free(content);
     json_decref(files);
     return status;
+}
+
+// ---- vehicle models named by types ---------------------------------------------------------
+
+typedef struct model_search {
+    const char *sumocfg_path;
+    cp_scenario_model_visit *visit;
+    void *context;
+} model_search;
+
+// One <param ...> tag: the model it names, if that is what it does.
+static cp_status visit_param(const model_search *search, const char *tag, const char *end,
+                             cp_error *error)
+{
+    static const char KEY[] = "crashpulse.model";
+    size_t key_length = 0, length = 0;
+    const char *key = find_attribute(tag, end, "key", "key", &key_length);
+    const char *value = find_attribute(tag, end, "value", "value", &length);
+    if (key == NULL || value == NULL || key_length != sizeof KEY - 1 ||
+        strncmp(key, KEY, key_length) != 0)
+        return CP_OK;
+    char *name = strndup(value, length);
+    if (name == NULL)
+        return cp_fail_memory(error, "vehicle types");
+    cp_status status = search->visit(name, search->sumocfg_path, search->context, error);
+    free(name);
+    return status;
+}
+
+static cp_status visit_params(const char *path, const char *name, void *context, cp_error *error)
+{
+    static const char PARAM[] = "<param";
+    const model_search *search = context;
+    char *content = NULL;
+    size_t size = 0;
+    (void)name;
+    cp_status status = cp_file_read(path, &content, &size, error);
+    if (status != CP_OK)
+        return status;
+    remove_comments(content);
+    for (const char *tag = strstr(content, PARAM); tag != NULL && status == CP_OK;
+         tag = strstr(tag + 1, PARAM)) {
+        const char *end = strchr(tag, '>');
+        if (end != NULL)
+            status = visit_param(search, tag + sizeof PARAM - 1, end, error);
+    }
+    free(content);
+    return status;
+}
+
+cp_status cp_scenario_models(const char *sumocfg_path, cp_scenario_model_visit *visit,
+                             void *context, cp_error *error)
+{
+    model_search search = {.sumocfg_path = sumocfg_path, .visit = visit, .context = context};
+    return visit_scenario(visit_params, &search, sumocfg_path, error);
 }

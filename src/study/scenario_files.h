@@ -14,4 +14,13 @@
 CP_MUST_CHECK cp_status cp_scenario_files_json(const char *sumocfg_path, char **json,
                                                cp_error *error);
 
+/* The vehicle models that vehicle types of a scenario name: every value of a
+ * <param key="crashpulse.model" value="..."/> in its input files (uncompressed ones), in the order
+ * of the files; one named twice comes twice. in_file is sumocfg_path: paths are seen from it. visit
+ * may fail, which ends it. Errors: as above, and those of visit. */
+typedef cp_status cp_scenario_model_visit(const char *name, const char *in_file, void *context,
+                                          cp_error *error);
+CP_MUST_CHECK cp_status cp_scenario_models(const char *sumocfg_path, cp_scenario_model_visit *visit,
+                                           void *context, cp_error *error);
+
 #endif

@@ -94,7 +94,7 @@ typedef struct raw_study {
     unsigned scenarios_count;
     raw_variant *variants;
     unsigned variants_count;
-    raw_vehicles vehicles;
+    raw_vehicles *vehicles;
     raw_counterfactual *counterfactual;
     cp_sweep_entry *sweep;
     unsigned sweep_count;
@@ -152,7 +152,7 @@ static const cyaml_schema_value_t VEHICLE_TYPE = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_vehicle_type, VEHICLE_TYPE_FIELDS)};
 
 static const cyaml_schema_field_t VEHICLES_FIELDS[] = {
-    TEXT("default", raw_vehicles, standard),
+    TEXT_OPTIONAL("default", raw_vehicles, standard),
     LIST_OPTIONAL("types", raw_vehicles, types, VEHICLE_TYPE), CYAML_FIELD_END};
 
 static const cyaml_schema_field_t COUNTERFACTUAL_FIELDS[] = {
@@ -178,7 +178,8 @@ static const cyaml_schema_field_t STUDY_FIELDS[] = {
                             after_crash, AFTER_CRASH_FIELDS),
     LIST("scenarios", raw_study, scenarios, SCENARIO),
     LIST("variants", raw_study, variants, VARIANT),
-    CYAML_FIELD_MAPPING("vehicles", CYAML_FLAG_DEFAULT, raw_study, vehicles, VEHICLES_FIELDS),
+    CYAML_FIELD_MAPPING_PTR("vehicles", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
+                            vehicles, VEHICLES_FIELDS),
     CYAML_FIELD_MAPPING_PTR("counterfactual", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
                             counterfactual, COUNTERFACTUAL_FIELDS),
     LIST_OPTIONAL("sweep", raw_study, sweep, CP_SWEEP_ENTRY),
@@ -505,20 +506,33 @@ static cp_status check_treatments(const cp_yaml_file *file, const cp_study *stud
     return CP_OK;
 }
 
-static cp_status take_vehicles(const cp_yaml_file *file, const raw_vehicles *raw, cp_study *study,
+// The name of a shipped vehicle stays a name; everything else is a file.
+static cp_status take_model(const cp_yaml_file *file, const char *key_path, const char *text,
+                            cp_study_vehicle *vehicle, cp_error *error)
+{
+    vehicle->line = cp_yaml_line_of(file, key_path);
+    if (strchr(text, '/') != NULL || strchr(text, '.') != NULL)
+        return take_path(file, key_path, text, &vehicle->model_path, error);
+    vehicle->model_name = strdup(text);
+    return vehicle->model_name != NULL ? CP_OK : cp_fail_memory(error, key_path);
+}
+
+static cp_status take_vehicles(const cp_yaml_file *file, const raw_vehicles *given, cp_study *study,
                                cp_error *error)
 {
+    const raw_vehicles nothing = {0};
+    const raw_vehicles *raw = given != NULL ? given : &nothing;
     study->vehicles = calloc((size_t)raw->types_count + 1, sizeof *study->vehicles);
     if (study->vehicles == NULL)
         return cp_fail_memory(error, "vehicles");
     study->vehicle_count = (size_t)raw->types_count + 1;
-    cp_status status =
-        take_path(file, "vehicles.default", raw->standard, &study->vehicles[0].model_path, error);
+    cp_status status = CP_OK;
+    if (raw->standard != NULL)
+        status = take_model(file, "vehicles.default", raw->standard, &study->vehicles[0], error);
     for (size_t k = 0; status == CP_OK && k < raw->types_count; k++) {
         char path[KEY_PATH_SIZE];
         snprintf(path, sizeof path, "vehicles.types[%zu].model", k);
-        status =
-            take_path(file, path, raw->types[k].model, &study->vehicles[k + 1].model_path, error);
+        status = take_model(file, path, raw->types[k].model, &study->vehicles[k + 1], error);
         snprintf(path, sizeof path, "vehicles.types[%zu].type", k);
         for (size_t other = 0; status == CP_OK && other < k; other++)
             if (strcmp(raw->types[other].type, raw->types[k].type) == 0)
@@ -555,7 +569,7 @@ cp_status cp_study_load(const char *path, cp_study *study, cp_error *error)
     if (status == CP_OK)
         status = check_treatments(&file, study, error);
     if (status == CP_OK)
-        status = take_vehicles(&file, &raw->vehicles, study, error);
+        status = take_vehicles(&file, raw->vehicles, study, error);
     // Last: messages about scenarios and variants count them as the file does.
     if (status == CP_OK)
         status = cp_sweep_expand(&file, raw->sweep, raw->sweep_count, study, error);
@@ -575,6 +589,7 @@ void cp_study_destroy(cp_study *study)
     for (size_t k = 0; k < study->vehicle_count; k++) {
         free(study->vehicles[k].type);
         free(study->vehicles[k].model_path);
+        free(study->vehicles[k].model_name);
     }
     free(study->scenarios);
     free(study->variants);

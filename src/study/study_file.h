@@ -57,8 +57,10 @@ typedef struct cp_study_variant {
 
 /* The surrogate model that vehicles of one SUMO vehicle type crash as. */
 typedef struct cp_study_vehicle {
-    char *type;       /* NULL: every type not named */
-    char *model_path; /* resolved */
+    char *type;       /* NULL: every car not named */
+    char *model_path; /* resolved; NULL when a name is given instead, or nothing */
+    char *model_name; /* of a shipped vehicle; else NULL */
+    size_t line;      /* in the study file */
 } cp_study_vehicle;
 
 /* How counterfactual pairs are made; the design's own section, all of it optional. */
@@ -87,7 +89,7 @@ typedef struct cp_study {
     size_t scenario_count;
     cp_study_variant *variants;
     size_t variant_count;
-    cp_study_vehicle *vehicles; /* [0] is the default */
+    cp_study_vehicle *vehicles; /* [0] is the default, which may name no model */
     size_t vehicle_count;
 } cp_study;
 

@@ -589,6 +589,40 @@ const char *sumo_bridge_lane_id(uint32_t lane)
     return bridge ? bridge->lanes.text(lane) : "";
 }
 
+cp_status sumo_bridge_type(const char *type_id, cp_sumo_type *type, cp_error *error)
+{
+    using libsumo::VehicleType;
+    *type = {};
+    std::string vehicle_class, model, mass;
+    cp_status status = need_running(error);
+    if (status == CP_OK)
+        status = guarded(type_id, CP_TRAFFIC_FAILED, error, [&] {
+            vehicle_class = VehicleType::getVehicleClass(type_id);
+            model = VehicleType::getParameter(type_id, SUMO_BRIDGE_MODEL_KEY);
+            mass = VehicleType::getParameter(type_id, "vehicleMass");
+            type->length_m = VehicleType::getLength(type_id);
+            type->width_m = VehicleType::getWidth(type_id);
+            type->height_m = VehicleType::getHeight(type_id);
+        });
+    if (status != CP_OK)
+        return status;
+    if (model.size() >= sizeof type->model)
+        return cp_fail(error, CP_BAD_INPUT, "vehicle type '%s': %s is longer than %zu characters",
+                       type_id, SUMO_BRIDGE_MODEL_KEY, sizeof type->model - 1);
+    vehicle_class.copy(type->vehicle_class, sizeof type->vehicle_class - 1);
+    model.copy(type->model, sizeof type->model - 1);
+    type->mass_kg = std::nan("");
+    if (mass.empty())
+        return CP_OK;
+    char *end = nullptr;
+    type->mass_kg = std::strtod(mass.c_str(), &end);
+    if (*end != '\0' || !(type->mass_kg > 0.0) || !std::isfinite(type->mass_kg))
+        return cp_fail(error, CP_BAD_INPUT,
+                       "vehicle type '%s': vehicleMass must be a mass in kg, found '%s'", type_id,
+                       mass.c_str());
+    return CP_OK;
+}
+
 cp_status sumo_bridge_departed(const uint32_t **vehicles, size_t *count, cp_error *error)
 {
     *vehicles = nullptr;

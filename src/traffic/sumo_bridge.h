@@ -59,6 +59,18 @@ typedef struct cp_next_light {
     bool is_red;       /* for this vehicle, now */
 } cp_next_light;
 
+/* What a vehicle type of SUMO is. */
+typedef struct cp_sumo_type {
+    char vehicle_class[32]; /* vClass */
+    char model[512];        /* value of its parameter crashpulse.model; "" without one */
+    double length_m;
+    double width_m;
+    double height_m;
+    double mass_kg; /* its parameter vehicleMass; NAN without one */
+} cp_sumo_type;
+
+#define SUMO_BRIDGE_MODEL_KEY "crashpulse.model"
+
 /* How the roads of two vehicles lie to each other. */
 typedef enum cp_road_relation {
     CP_ROADS_MEET,        /* same road (either direction), or one junction, within the longer
@@ -116,6 +128,10 @@ CP_MUST_CHECK cp_status sumo_bridge_next_light(uint32_t vehicle, cp_next_light *
 const char *sumo_bridge_vehicle_id(uint32_t vehicle);
 const char *sumo_bridge_type_id(uint32_t type);
 const char *sumo_bridge_lane_id(uint32_t lane);
+
+/* A vehicle type by its id. Errors: CP_TRAFFIC_FAILED for one SUMO does not have; CP_BAD_INPUT for
+ * a parameter that is too long or no number. */
+CP_MUST_CHECK cp_status sumo_bridge_type(const char *type_id, cp_sumo_type *type, cp_error *error);
 
 /* Vehicles inserted in the last step. Valid until the next step. */
 CP_MUST_CHECK cp_status sumo_bridge_departed(const uint32_t **vehicles, size_t *count,

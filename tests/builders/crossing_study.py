@@ -21,6 +21,7 @@ variants:
   - {{name: aeb, functions: [{{function: aeb}}]}}
 vehicles:
   default: car.yaml
+  types: [{{type: van, model: car.yaml}}]
 {more}"""
 
 

@@ -92,7 +92,8 @@ static void write_study(const fixture *f, const char *name, const char *design,
              "  - name: baseline\n"
              "%s"
              "vehicles:\n"
-             "  default: car.yaml\n",
+             "  default: car.yaml\n"
+             "  types: [{type: van, model: car.yaml}]\n",
              design, sumo_options, variants);
     snprintf(file, sizeof file, "%s.yaml", name);
     write_text(f, file, text);

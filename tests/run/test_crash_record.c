@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/crash_record.h"
 
+#include "core/rng.h"
 #include "crash/crash_simulation.h"
+#include "impact/confirmation.h"
+#include "impact/footprint.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -54,17 +57,30 @@ static cp_impact head_on(double offset_m)
     return impact;
 }
 
-static const cp_impact_names NAMES = {
-    .sumo_id = {"one", "two"}, .sumo_type = {"passenger", "van"}, .at_fault = {true, false}};
+static cp_impact_names names_of(const char *type_of_b)
+{
+    return (cp_impact_names){
+        .sumocfg_path = "a.sumocfg",
+        .sumo_id = {"one", "two"},
+        .sumo_type = {"passenger", type_of_b},
+        .type = {{"passenger", "", 4.86, 1.85, 1.5, NAN}, {"truck", "", 7.1, 2.4, 2.4, NAN}},
+        .at_fault = {true, false}};
+}
 
-static void record(const cp_impact *impact, cp_result_rows *rows)
+static void record_as(const cp_impact *impact, const char *type_of_b, cp_result_rows *rows)
 {
     small_fleet f;
     cp_error error = {0};
+    cp_impact_names names = names_of(type_of_b);
     fill_fleet(&f);
     cp_crash_row *row = cp_result_rows_add_crash(rows);
     assert_non_null(row);
-    assert_int_equal(cp_crash_record_fill(impact, &NAMES, &f.fleet, row, &error), CP_OK);
+    assert_int_equal(cp_crash_record_fill(impact, &names, &f.fleet, row, &error), CP_OK);
+}
+
+static void record(const cp_impact *impact, cp_result_rows *rows)
+{
+    record_as(impact, "van", rows);
 }
 
 static void front_to_front(void **state)
@@ -129,12 +145,131 @@ static void crash_without_simulation_is_kept(void **state)
     cp_result_rows_destroy(&rows);
 }
 
+// A truck: what happened is kept, no severity of either, and both say why.
+static void vehicle_without_model_is_no_car(void **state)
+{
+    (void)state;
+    cp_result_rows rows = {0};
+    cp_impact impact = head_on(0.0);
+    impact.state[1].length_m = 7.1;
+    impact.state[1].width_m = 2.4;
+    record_as(&impact, "lorry", &rows);
+    const cp_crash_vehicle_row *car = &rows.crash->vehicle[0], *truck = &rows.crash->vehicle[1];
+    assert_string_equal(car->vehicle_model, "car");
+    assert_string_equal(car->chosen_by, "study_default");
+    assert_string_equal(truck->vehicle_model, CP_NO_VEHICLE_MODEL);
+    assert_string_equal(truck->no_model_reason, "no shipped model of vClass truck");
+    assert_int_equal(truck->outside, CP_OUTSIDE_NO_MODEL);
+    assert_true((car->outside & CP_OUTSIDE_OPPONENT_STRUCTURE) != 0);
+    assert_true((car->outside & CP_OUTSIDE_NO_MODEL) == 0);
+    for (int role = 0; role < 2; role++) {
+        assert_int_equal(rows.crash->vehicle[role].severity.olc.status, CP_OLC_SIMULATION_FAILED);
+        assert_null(rows.crash->vehicle[role].pulse);
+    }
+    assert_true(fabs(rows.crash->description.closing_speed_m_s - 30.0) < 1e-9);
+    assert_true(fabs(truck->body.cog_m.x - 0.42 * 7.1) < 1e-9);
+    cp_result_rows_destroy(&rows);
+}
+
+// SUMO's van is longer than its model: what touches it at its end is a crash all the same, and is
+// marked when the model was stretched far.
+static void what_touches_in_traffic_touches_in_the_crash(void **state)
+{
+    (void)state;
+    double model_m = cp_vehicle_model_default().length_m;
+    static const double LONGER_M[] = {0.0, 0.4, 1.5};
+    for (int k = 0; k < 3; k++) {
+        // a strikes b from the side, with half its front past the end of b's model.
+        cp_result_rows rows = {0};
+        cp_impact impact = head_on(0.0);
+        double length_m = model_m + LONGER_M[k], overlap_m = 0.3;
+        impact.side[1] = CP_SIDE_LEFT;
+        impact.state[1].length_m = length_m;
+        impact.state[1].yaw_rad = 0.5 * 3.14159265358979323846;
+        impact.state[1].front_x_m = 0.5 * impact.state[1].width_m;
+        impact.state[1].front_y_m = length_m + 0.5 * impact.state[0].width_m - overlap_m;
+        impact.front_velocity_m_s[1] = (cp_vec2){0.0, 0.0};
+        record(&impact, &rows);
+        for (int role = 0; role < 2; role++)
+            assert_non_null(rows.crash->vehicle[role].pulse);
+        assert_true(rows.crash->vehicle[1].severity.delta_v_m_s > 0.1);
+        assert_int_equal((rows.crash->vehicle[1].outside & CP_OUTSIDE_SIZE) != 0, k == 2);
+        cp_result_rows_destroy(&rows);
+    }
+}
+
+static const cp_vec2 NOWHERE = {0.0, 0.0};
+
+// Straight on, b's middle at middle_m when both are where a is at the origin: slide b back along
+// the relative velocity until the rectangles just touch. False when it never parts.
+static bool slide_to_touch(cp_impact *impact, cp_vec2 middle_m, cp_touching_body body[2])
+{
+    cp_vec2 way = cp_vec2_sub(impact->front_velocity_m_s[1], impact->front_velocity_m_s[0]);
+    double near_s = 0.0, far_s = 2.0;
+    for (int k = 0; k < 80; k++) {
+        double back_s = k == 0 ? far_s : 0.5 * (near_s + far_s);
+        cp_vehicle_state *b = &impact->state[1];
+        cp_vec2 to_front = cp_vec2_scale(cp_vec2_heading(b->yaw_rad), 0.5 * b->length_m);
+        cp_vec2 front_m = cp_vec2_add(cp_vec2_sub(middle_m, cp_vec2_scale(way, back_s)), to_front);
+        b->front_x_m = front_m.x;
+        b->front_y_m = front_m.y;
+        for (int role = 0; role < 2; role++)
+            body[role] =
+                (cp_touching_body){.rectangle = cp_footprint_of_state(&impact->state[role]),
+                                   .front_velocity_m_s = impact->front_velocity_m_s[role]};
+        bool apart = cp_rectangle_separation(&body[0].rectangle, &body[1].rectangle) > 0.0;
+        if (k == 0 && !apart)
+            return false;
+        *(apart ? &far_s : &near_s) = back_s;
+    }
+    return true;
+}
+
+// Whatever two vehicles of any size do to each other in traffic that counts as a crash, the
+// surrogate simulates.
+static void every_crash_of_traffic_is_simulated(void **state)
+{
+    (void)state;
+    cp_rng_key key = cp_rng_key_text(cp_rng_key_seed(3), "crashes of traffic");
+    size_t crashes = 0, draw = 0;
+    while (crashes < 300) {
+        double u[9];
+        for (int k = 0; k < 9; k++)
+            u[k] = cp_rng_uniform(key, 9 * draw + (uint64_t)k);
+        draw++;
+        cp_impact impact = head_on(0.0);
+        impact.state[1].yaw_rad = 6.2 * u[0];
+        for (int role = 0; role < 2; role++) {
+            impact.state[role].length_m = 3.2 + 3.3 * u[1 + role];
+            impact.state[role].width_m = 1.5 + 0.7 * u[3 + role];
+            impact.state[role].speed_m_s = 1.0 + 20.0 * u[5 + role];
+            impact.front_velocity_m_s[role] = cp_vec2_scale(
+                cp_vec2_heading(impact.state[role].yaw_rad), impact.state[role].speed_m_s);
+        }
+        cp_touching_body body[2];
+        cp_vec2 middle_m = {-7.0 * u[7], 6.0 * (u[8] - 0.5)};
+        if (!slide_to_touch(&impact, middle_m, body) || !cp_contact_goes_deep(body))
+            continue;
+        impact.contact_m = NOWHERE;
+        cp_result_rows rows = {0};
+        record(&impact, &rows);
+        if (rows.crash->vehicle[0].pulse == NULL)
+            fail_msg("draw %zu: %g x %g m and %g x %g m never meet", draw, impact.state[0].length_m,
+                     impact.state[0].width_m, impact.state[1].length_m, impact.state[1].width_m);
+        cp_result_rows_destroy(&rows);
+        crashes++;
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(front_to_front),
         cmocka_unit_test(olc_is_for_struck_fronts_only),
         cmocka_unit_test(crash_without_simulation_is_kept),
+        cmocka_unit_test(vehicle_without_model_is_no_car),
+        cmocka_unit_test(what_touches_in_traffic_touches_in_the_crash),
+        cmocka_unit_test(every_crash_of_traffic_is_simulated),
     };
     return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

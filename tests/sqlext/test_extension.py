@@ -27,6 +27,7 @@ variants:
   - {name: aeb, functions: [{function: aeb}]}
 vehicles:
   default: car.yaml
+  types: [{type: van, model: car.yaml}]
 """
 
 parser = argparse.ArgumentParser()

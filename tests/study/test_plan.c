@@ -9,7 +9,7 @@ static void load(const fixture *f, const char *text, cp_study *study, cp_plan_ro
     cp_error error = {0};
     write_text(f, "study.yaml", text);
     assert_ok(cp_study_load(f->study, study, &error), &error);
-    assert_ok(cp_plan_create(study, MODELS, rows, &error), &error);
+    assert_ok(cp_plan_create(study, MODELS, 2, rows, &error), &error);
 }
 
 static void unload(cp_study *study, cp_plan_rows *rows)
@@ -152,11 +152,11 @@ static void two_cars_of_one_name_are_refused(void **state)
     cp_error error = {0};
     cp_vehicle_model_row twins[2] = {MODELS[0], MODELS[0]};
     assert_ok(cp_study_load(f->study, &study, &error), &error);
-    assert_ok(cp_plan_create(&study, twins, &rows, &error), &error);
+    assert_ok(cp_plan_create(&study, twins, 2, &rows, &error), &error);
     assert_int_equal(rows.vehicle_model_count, 1);
     cp_plan_destroy(&rows);
     strcpy(twins[1].hash, "cc");
-    assert_int_equal(cp_plan_create(&study, twins, &rows, &error), CP_BAD_INPUT);
+    assert_int_equal(cp_plan_create(&study, twins, 2, &rows, &error), CP_BAD_INPUT);
     assert_non_null(strstr(error.text, "van.yaml"));
     cp_study_destroy(&study);
 }

@@ -118,7 +118,7 @@ static void values_share_seeds_unless_independent(void **state)
     study.design = CP_DESIGN_PAIRED_SEEDS;
 
     // Rows: ids of their own, and the values to join with.
-    assert_ok(cp_plan_create(&study, MODELS, &rows, &error), &error);
+    assert_ok(cp_plan_create(&study, MODELS, 2, &rows, &error), &error);
     assert_int_equal(rows.replication_count, 12);
     for (size_t k = 0; k < 12; k++)
         for (size_t other = 0; other < k; other++) {

@@ -4,7 +4,8 @@
 
     db/train_pulse_dictionary.py OUTPUT DATABASE...
 
-trains one of 4 KB on the pulses of codec 2 in the databases (`zstd --train`). A dictionary that
+trains one of 4 KB on the pulses of codec 2 in the databases (`zstd --train`; Debian's zstd). The
+shipped one came of a database of its time and cannot be had again from another. A dictionary that
 pulses were packed with is never replaced: another one makes another codec."""
 import pathlib
 import sqlite3

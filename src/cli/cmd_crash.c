@@ -28,6 +28,7 @@ typedef struct arguments {
     long seed;                         /* -1: not given */
     const char *from_path;             /* database of a study; NULL: none */
     long crash_id;                     /* -1: not given */
+    const char *treatment;             /* NULL: the crash as it happened in the baseline */
     bool described;                    /* an option says how the cars meet */
     cp_format format;
 } arguments;
@@ -46,7 +47,8 @@ enum {
     SAMPLES,
     SEED,
     FROM,
-    CRASH
+    CRASH,
+    TREATMENT
 };
 
 static const struct argp_option OPTIONS[] = {
@@ -78,6 +80,8 @@ static const struct argp_option OPTIONS[] = {
     {"from", FROM, "DB", 0,
      "simulate a crash of this study's database again, from the database alone", 0},
     {"crash", CRASH, "ID", 0, "which one: crash.id", 0},
+    {"treatment", TREATMENT, "VARIANT", 0,
+     "of a counterfactual study: what this crash became under the variant", 0},
     {0},
 };
 
@@ -91,14 +95,14 @@ static void check_stored(const arguments *a, struct argp_state *state)
     if (a->vehicle_path || a->opponent_path || a->described || a->samples > 0 ||
         a->overlay_vehicle_path || a->overlay_opponent_path)
         argp_error(state, "--from takes vehicles, speeds and all else from the database; only "
-                          "--pulse, --raw, --animate and --format go with it");
+                          "--treatment, --pulse, --raw, --animate and --format go with it");
     if (a->raw && !a->pulse_path)
         argp_error(state, "--raw is about the pulse file: --pulse FILE.csv is missing");
 }
 
 static void check(const arguments *a, struct argp_state *state)
 {
-    if (a->from_path || a->crash_id >= 0) {
+    if (a->from_path || a->crash_id >= 0 || a->treatment) {
         check_stored(a, state);
         return;
     }
@@ -146,6 +150,9 @@ static error_t parse_output(int key, char *argument, struct argp_state *state)
         return 0;
     case CRASH:
         a->crash_id = cp_args_integer(state, "--crash", argument, 0, LONG_MAX);
+        return 0;
+    case TREATMENT:
+        a->treatment = argument;
         return 0;
     case SEED:
         a->seed = cp_args_integer(state, "--seed", argument, 0, LONG_MAX);
@@ -314,8 +321,9 @@ static cp_status simulate_again(const arguments *a, cp_error *error)
 {
     cp_crash_again again = {0};
     filmed_run filmed = {.film = cp_crash_film_default()};
-    cp_status status = cp_crash_again_simulate(
-        a->from_path, a->crash_id, a->animation_path ? &filmed.film : NULL, &again, error);
+    cp_status status =
+        cp_crash_again_simulate(a->from_path, a->crash_id, a->treatment,
+                                a->animation_path ? &filmed.film : NULL, &again, error);
     filmed.run = again.run;
     if (status == CP_OK && a->pulse_path)
         status = cp_crash_write_pulse(&again.run, a->raw, a->pulse_path, error);

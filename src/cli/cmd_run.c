@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { TIME_LIMIT = 256, SHARD };
+enum { TIME_LIMIT = 256, SHARD, NO_CHECK };
 
 static const struct argp_option OPTIONS[] = {
     {"db", 'd', "FILE", 0,
@@ -19,6 +19,8 @@ static const struct argp_option OPTIONS[] = {
      0},
     {"shard", SHARD, "I/N", 0,
      "run only share I of N, into a database of its own; 'crashpulse merge' puts them together", 0},
+    {"no-check", NO_CHECK, NULL, 0,
+     "do not read the whole database for damage before going on with it (seconds a gigabyte)", 0},
     {0},
 };
 
@@ -45,6 +47,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case TIME_LIMIT:
         options->time_limit_s = cp_args_number(state, "--time-limit", argument, 1, 1e7, "s");
+        return 0;
+    case NO_CHECK:
+        options->unchecked = true;
         return 0;
     case SHARD:
         parse_shard(argument, options, state);

@@ -3,13 +3,13 @@
 
 #include "core/log.h"
 
-cp_status cp_crash_again_simulate(const char *db_path, int64_t crash_id, cp_crash_film *film,
-                                  cp_crash_again *again, cp_error *error)
+cp_status cp_crash_again_simulate(const char *db_path, int64_t crash_id, const char *treatment,
+                                  cp_crash_film *film, cp_crash_again *again, cp_error *error)
 {
     cp_store *store = NULL;
     cp_status status = cp_store_open(db_path, CP_STORE_READ, &store, error);
     if (status == CP_OK)
-        status = cp_stored_crash_read(store, crash_id, &again->stored, error);
+        status = cp_stored_crash_read(store, crash_id, treatment, &again->stored, error);
     if (status == CP_OK) {
         cp_crash_options options = again->stored.options;
         options.film = film;
@@ -23,7 +23,8 @@ cp_status cp_crash_again_simulate(const char *db_path, int64_t crash_id, cp_cras
                                    &again->run.configuration, &options, &again->run.result, error);
     }
     if (status == CP_OK)
-        status = cp_stored_crash_compare(store, crash_id, &again->run.result, &again->match, error);
+        status = cp_stored_crash_compare(store, &again->stored, &again->run.result, &again->match,
+                                         error);
     cp_store_close(store);
     return status;
 }
@@ -31,9 +32,9 @@ cp_status cp_crash_again_simulate(const char *db_path, int64_t crash_id, cp_cras
 cp_status cp_crash_again_conclude(const cp_crash_again *again, cp_error *error)
 {
     const cp_stored_crash *stored = &again->stored;
-    cp_log_info("crash %lld of %s and %s at %.2f s, simulated by crashpulse %s",
+    cp_log_info("crash %lld of %s and %s at %.2f s%s%s, simulated by crashpulse %s",
                 (long long)stored->id, stored->sumo_id[0], stored->sumo_id[1], stored->time_s,
-                stored->crashpulse_version);
+                stored->is_treated ? " under " : "", stored->treatment, stored->crashpulse_version);
     switch (again->match) {
     case CP_STORED_SAME_BYTES:
         cp_log_info("the pulses are the stored ones, byte for byte");

@@ -12,11 +12,12 @@ typedef struct cp_crash_again {
     cp_stored_match match;
 } cp_crash_again;
 
-/* Read crash id of the database, simulate it (film may be NULL) and hold the pulses against the
- * stored ones. Errors: those of the store and of the simulation. */
+/* Read crash id of the database (treatment not NULL: what it became under it), simulate it (film
+ * may be NULL) and hold the pulses against the stored ones. Errors: those of the store and of the
+ * simulation. */
 CP_MUST_CHECK cp_status cp_crash_again_simulate(const char *db_path, int64_t crash_id,
-                                                cp_crash_film *film, cp_crash_again *again,
-                                                cp_error *error);
+                                                const char *treatment, cp_crash_film *film,
+                                                cp_crash_again *again, cp_error *error);
 
 /* What the comparison found, to stderr. CP_RUN_FAILED when the pulses are others. */
 CP_MUST_CHECK cp_status cp_crash_again_conclude(const cp_crash_again *again, cp_error *error);

@@ -38,7 +38,7 @@ static cp_status film_crash(cp_store *store, const cp_study_data *data, size_t v
     json_t *run = NULL;
     cp_error failure = {0};
     film.interval_s = FRAME_INTERVAL_S;
-    cp_status status = cp_stored_crash_read(store, crash->id, &stored, &failure);
+    cp_status status = cp_stored_crash_read(store, crash->id, NULL, &stored, &failure);
     if (status == CP_OK) {
         cp_crash_options options = stored.options;
         options.film = &film;
@@ -46,7 +46,7 @@ static cp_status film_crash(cp_store *store, const cp_study_data *data, size_t v
                                    &options, &result, &failure);
     }
     if (status == CP_OK)
-        status = cp_stored_crash_compare(store, crash->id, &result, &match, &failure);
+        status = cp_stored_crash_compare(store, &stored, &result, &match, &failure);
     if (status == CP_OK) {
         const cp_animated_run animated = {.model = {&stored.model[0], &stored.model[1]},
                                           .configuration = &stored.configuration,

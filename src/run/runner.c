@@ -152,6 +152,8 @@ static cp_status prepare_store(runner *run, cp_error *error)
     size_t released = 0;
     double done = 0.0;
     cp_status status = cp_store_open(run->options->db_path, CP_STORE_CREATE, &run->store, error);
+    if (status == CP_OK && !run->options->unchecked)
+        status = cp_store_check_damage(run->store, error);
     if (status == CP_OK)
         status = cp_claim_release_dead(run->store, cp_owner_is_alive, &released, error);
     if (status == CP_OK)

@@ -68,6 +68,24 @@ static const rule RULES[] = {
      "NULL)"},
 };
 
+// The same of counterfactual pairs.
+static const rule PAIR_RULES[] = {
+    {"treatments of crashes", "SELECT count(*) FROM counterfactual",
+     "SELECT 'crash ' || n.crash_id || ' has not one outcome under each treatment' FROM "
+     "null_treatment AS n WHERE (SELECT count(*) FROM counterfactual AS c WHERE c.crash_id = "
+     "n.crash_id) <> (SELECT count(*) FROM variant WHERE is_baseline = 0)"},
+    {"vehicles of treated crashes", "SELECT count(*) FROM counterfactual WHERE time_s IS NOT NULL",
+     "SELECT 'crash ' || crash_id || ' under variant ' || variant_id || ' has not the vehicles of "
+     "its outcome' FROM counterfactual AS c WHERE (SELECT count(*) FROM counterfactual_vehicle AS "
+     "v WHERE v.crash_id = c.crash_id AND v.variant_id = c.variant_id) <> CASE WHEN time_s IS NULL "
+     "THEN 0 ELSE 2 END"},
+    {"pulses of treated vehicles", "SELECT count(*) FROM counterfactual_vehicle",
+     "SELECT 'vehicle ' || v.role || ' of crash ' || v.crash_id || ' under variant ' || "
+     "v.variant_id || CASE WHEN p.samples IS NULL THEN ' has no pulse' ELSE ' has a pulse but no "
+     "severity' END FROM counterfactual_vehicle AS v LEFT JOIN counterfactual_pulse AS p USING "
+     "(crash_id, variant_id, role) WHERE (v.delta_v_m_s IS NULL) <> (p.samples IS NULL)"},
+};
+
 static cp_status apply_rule(cp_store *store, const rule *applied, cp_inspection *inspection,
                             cp_error *error)
 {
@@ -125,35 +143,57 @@ static cp_status check_vehicle_files(cp_store *store, cp_inspection *inspection,
     return status;
 }
 
-static cp_status check_pulses(cp_store *store, cp_inspection *inspection, cp_error *error)
+// One stored pulse; a damaged one is noted.
+static cp_status check_pulse(const cp_statement *s, cp_inspection_result *result, cp_error *error)
 {
-    cp_inspection_result *result = add(inspection, "stored pulses");
+    cp_pulse pulse = {0};
+    cp_error damage = {0};
+    char text[512], treatment[64] = "";
+    result->looked_at++;
+    cp_status status = cp_pulse_decode(
+        sqlite3_column_int(s->handle, 2), sqlite3_column_blob(s->handle, 3),
+        (size_t)sqlite3_column_bytes(s->handle, 3), sqlite3_column_int64(s->handle, 4),
+        sqlite3_column_double(s->handle, 5), &pulse, &damage);
+    cp_pulse_destroy(&pulse);
+    if (status != CP_OK && status != CP_BAD_INPUT)
+        return cp_fail(error, status, "%s", damage.text);
+    if (sqlite3_column_type(s->handle, 6) != SQLITE_NULL)
+        snprintf(treatment, sizeof treatment, " under variant %lld",
+                 (long long)sqlite3_column_int64(s->handle, 6));
+    snprintf(text, sizeof text, "vehicle %s of crash %lld%s: %.400s", text_of(s, 1),
+             (long long)sqlite3_column_int64(s->handle, 0), treatment, damage.text);
+    if (status == CP_BAD_INPUT)
+        note(result, text);
+    return CP_OK;
+}
+
+static cp_status check_pulses(cp_store *store, const char *what, const char *sql,
+                              cp_inspection *inspection, cp_error *error)
+{
+    cp_inspection_result *result = add(inspection, what);
     cp_statement s;
     int row = 0;
-    cp_status status = cp_statement_prepare(
-        store, result->what,
-        "SELECT crash_id, role, codec, samples, sample_count, sample_interval_s FROM pulse", &s,
-        error);
-    while (status == CP_OK && (status = cp_statement_row(&s, &row, error)) == CP_OK && row) {
-        cp_pulse pulse = {0};
-        cp_error damage = {0};
-        result->looked_at++;
-        status = cp_pulse_decode(sqlite3_column_int(s.handle, 2), sqlite3_column_blob(s.handle, 3),
-                                 (size_t)sqlite3_column_bytes(s.handle, 3),
-                                 sqlite3_column_int64(s.handle, 4),
-                                 sqlite3_column_double(s.handle, 5), &pulse, &damage);
-        cp_pulse_destroy(&pulse);
-        if (status == CP_BAD_INPUT) {
-            char text[512];
-            snprintf(text, sizeof text, "vehicle %s of crash %lld: %.400s", text_of(&s, 1),
-                     (long long)sqlite3_column_int64(s.handle, 0), damage.text);
-            note(result, text);
-            status = CP_OK;
-        } else if (status != CP_OK) {
-            status = cp_fail(error, status, "%s", damage.text);
-        }
-    }
+    cp_status status = cp_statement_prepare(store, what, sql, &s, error);
+    while (status == CP_OK && (status = cp_statement_row(&s, &row, error)) == CP_OK && row)
+        status = check_pulse(&s, result, error);
     cp_statement_finish(&s);
+    return status;
+}
+
+// Only a counterfactual study has pairs to look at.
+static cp_status check_pairs(cp_store *store, cp_inspection *inspection, cp_error *error)
+{
+    int64_t pairs = 0;
+    cp_status status = cp_store_integer(
+        store, "reading the design", "SELECT count(*) FROM study WHERE design = 'counterfactual'",
+        &pairs, error);
+    for (size_t k = 0; status == CP_OK && pairs && k < sizeof PAIR_RULES / sizeof *PAIR_RULES; k++)
+        status = apply_rule(store, &PAIR_RULES[k], inspection, error);
+    if (status == CP_OK && pairs)
+        status = check_pulses(store, "stored pulses of treated vehicles",
+                              "SELECT crash_id, role, codec, samples, sample_count, "
+                              "sample_interval_s, variant_id FROM counterfactual_pulse",
+                              inspection, error);
     return status;
 }
 
@@ -166,7 +206,12 @@ cp_status cp_inspection_run(cp_store *store, cp_inspection *inspection, cp_error
     if (status == CP_OK)
         status = check_vehicle_files(store, inspection, error);
     if (status == CP_OK)
-        status = check_pulses(store, inspection, error);
+        status = check_pulses(store, "stored pulses",
+                              "SELECT crash_id, role, codec, samples, sample_count, "
+                              "sample_interval_s, NULL FROM pulse",
+                              inspection, error);
+    if (status == CP_OK)
+        status = check_pairs(store, inspection, error);
     for (int k = 0; k < inspection->count; k++)
         inspection->wrong += inspection->result[k].wrong;
     return status;

@@ -130,6 +130,34 @@ cp_status cp_store_integer(cp_store *store, const char *what, const char *sql, i
     return status;
 }
 
+// ---- damage --------------------------------------------------------------------------------
+
+cp_status cp_store_check_damage(cp_store *store, cp_error *error)
+{
+    cp_statement s;
+    int row = 0;
+    char found[512] = "";
+    cp_status status =
+        cp_statement_prepare(store, "looking for damage", "PRAGMA quick_check(1)", &s, error);
+    if (status == CP_OK)
+        status = cp_statement_row(&s, &row, error);
+    // Structure so bad that the check itself gives up is damage as well.
+    if (status == CP_OK && row)
+        snprintf(found, sizeof found, "%.400s", (const char *)sqlite3_column_text(s.handle, 0));
+    else if ((sqlite3_errcode(store->handle) & 0xff) == SQLITE_CORRUPT)
+        snprintf(found, sizeof found, "%.400s", sqlite3_errmsg(store->handle));
+    cp_statement_finish(&s);
+    if (found[0] == '\0' || strcmp(found, "ok") == 0)
+        return status;
+    for (char *c = found; *c != '\0'; c++)
+        *c = *c == '\n' ? ' ' : *c;
+    return cp_fail(
+        error, CP_STORE_FAILED,
+        "%s: is damaged: %s; nothing was changed in it; 'crashpulse check' lists what is "
+        "wrong, 'sqlite3 FILE .recover' saves what can be",
+        store->path, found);
+}
+
 // ---- extensions ----------------------------------------------------------------------------
 
 cp_status cp_store_load_extension(cp_store *store, const char *path, cp_error *error)

@@ -26,6 +26,10 @@ CP_MUST_CHECK cp_status cp_store_open(const char *path, cp_store_mode mode, cp_s
 /* NULL is fine. An open transaction is rolled back. */
 void cp_store_close(cp_store *store);
 
+/* Read the whole file for damage (SQLite's quick_check: every page, the structure of tables; not
+ * whether indexes agree with them). Error: CP_STORE_FAILED with the first damage found. */
+CP_MUST_CHECK cp_status cp_store_check_damage(cp_store *store, cp_error *error);
+
 /* Load a SQLite extension (its functions, for queries on this connection). Errors: CP_IO_FAILED
  * with SQLite's words. */
 CP_MUST_CHECK cp_status cp_store_load_extension(cp_store *store, const char *path, cp_error *error);

@@ -40,26 +40,95 @@ static const char *text_of(const cp_statement *s, int column)
 
 // Rows of schema versions 1 and 2 have no options: what the program used then are the defaults
 // below.
-static const char READ_CRASH[] =
-    "SELECT c.time_s, c.closing_speed_m_s, c.lateral_offset_m, c.angle_rad, c.overlap_1, "
-    "coalesce(r.crash_options ->> 'time_step_s', 0.0005), "
-    "coalesce(r.crash_options ->> 'duration_s', 0.2), "
-    "coalesce(r.crash_options ->> 'longest_duration_s', 0.4), "
+#define CRASH_COLUMNS                                                                              \
+    "SELECT c.time_s, c.closing_speed_m_s, c.lateral_offset_m, c.angle_rad, c.overlap_1, "         \
+    "coalesce(r.crash_options ->> 'time_step_s', 0.0005), "                                        \
+    "coalesce(r.crash_options ->> 'duration_s', 0.2), "                                            \
+    "coalesce(r.crash_options ->> 'longest_duration_s', 0.4), "                                    \
     "coalesce(r.crash_options ->> 'coast_after_s', 0.01), r.crashpulse_version, "
-    "c.is_secondary FROM crash AS c JOIN replication AS r ON r.id = c.replication_id WHERE c.id = "
-    "?1";
+#define VEHICLE_COLUMNS                                                                            \
+    "SELECT v.cog_x_m, v.cog_y_m, v.yaw_rad, v.velocity_x_m_s, v.velocity_y_m_s, "                 \
+    "v.yaw_rate_rad_s, v.speed_m_s, v.velocity_angle_rad, v.contact_side, v.sumo_id, "             \
+    "v.vehicle_model, m.yaml, v.length_m, v.width_m, coalesce(r.crash_options ->> "                \
+    "'covers_outline', 0), v.sumo_type, instr(',' || v.validity || ',', ',no_model,') > 0 "
+#define OF_REPLICATION                                                                             \
+    "JOIN crash AS c ON c.id = v.crash_id JOIN replication AS r ON r.id = c.replication_id "
+#define PULSE_COLUMNS "SELECT codec, samples, sample_count, sample_interval_s "
 
-static cp_status read_crash(cp_store *store, cp_stored_crash *crash, cp_error *error)
+// Queries for crash ?1 and vehicle ?2: of the study, and under treatment ?3.
+static const char *const READ_CRASH[2] = {
+    CRASH_COLUMNS
+    "c.is_secondary FROM crash AS c JOIN replication AS r ON r.id = c.replication_id WHERE c.id = "
+    "?1 AND ?3 IS NULL",
+    CRASH_COLUMNS "instr(',' || c.validity || ',', ',damaged,') > 0 FROM counterfactual AS c JOIN "
+                  "crash AS b ON b.id = c.crash_id JOIN replication "
+                  "AS r ON r.id = b.replication_id WHERE c.crash_id = ?1 AND c.variant_id = ?3 AND "
+                  "c.time_s IS NOT NULL"};
+static const char *const READ_VEHICLE[2] = {
+    VEHICLE_COLUMNS
+    "FROM crash_vehicle AS v JOIN vehicle_model AS m ON m.name = v.vehicle_model " OF_REPLICATION
+    "WHERE v.crash_id = ?1 AND v.role = ?2 AND ?3 IS NULL",
+    VEHICLE_COLUMNS "FROM counterfactual_vehicle AS v JOIN vehicle_model AS m ON m.name = "
+                    "v.vehicle_model " OF_REPLICATION
+                    "WHERE v.crash_id = ?1 AND v.role = ?2 AND v.variant_id = ?3"};
+static const char *const READ_PULSE[2] = {
+    PULSE_COLUMNS "FROM pulse WHERE crash_id = ?1 AND role = ?2 AND ?3 IS NULL", PULSE_COLUMNS
+    "FROM counterfactual_pulse WHERE crash_id = ?1 AND role = ?2 AND variant_id = ?3"};
+
+// Prepare one of them for the crash and run it; row tells whether there is an answer.
+static cp_status begin_reading(cp_store *store, const char *what, const char *const sql[2],
+                               const cp_stored_crash *crash, int role, cp_statement *s, int *row,
+                               cp_error *error)
+{
+    *row = 0;
+    cp_status status = cp_statement_prepare(store, what, sql[crash->is_treated], s, error);
+    if (status != CP_OK)
+        return status;
+    cp_bind_integer(s, 1, crash->id);
+    cp_bind_text(s, 2, ROLE[role]);
+    if (crash->is_treated)
+        cp_bind_integer(s, 3, crash->variant_id);
+    return cp_statement_row(s, row, error);
+}
+
+static cp_status find_treatment(cp_store *store, const char *treatment, cp_stored_crash *crash,
+                                cp_error *error)
 {
     cp_statement s;
     int row = 0;
-    cp_status status = cp_statement_prepare(store, "reading a crash", READ_CRASH, &s, error);
-    cp_bind_integer(&s, 1, crash->id);
+    if (treatment == NULL)
+        return CP_OK;
+    cp_status status = cp_statement_prepare(store, "reading a treatment",
+                                            "SELECT id FROM variant WHERE name = ?1", &s, error);
+    cp_bind_text(&s, 1, treatment);
     if (status == CP_OK)
         status = cp_statement_row(&s, &row, error);
     if (status == CP_OK && !row)
-        status = cp_fail(error, CP_BAD_INPUT, "%s: has no crash %lld", cp_store_path(store),
-                         (long long)crash->id);
+        status = cp_fail(error, CP_BAD_INPUT, "%s: has no variant '%s'", cp_store_path(store),
+                         treatment);
+    if (status == CP_OK)
+        crash->variant_id = sqlite3_column_int64(s.handle, 0);
+    crash->is_treated = true;
+    snprintf(crash->treatment, sizeof crash->treatment, "%s", treatment);
+    cp_statement_finish(&s);
+    return status;
+}
+
+static cp_status read_crash(cp_store *store, const char *treatment, cp_stored_crash *crash,
+                            cp_error *error)
+{
+    cp_statement s;
+    int row = 0;
+    cp_status status =
+        begin_reading(store, "reading a crash", READ_CRASH, crash, 0, &s, &row, error);
+    if (status == CP_OK && !row)
+        status = treatment == NULL
+                     ? cp_fail(error, CP_BAD_INPUT, "%s: has no crash %lld", cp_store_path(store),
+                               (long long)crash->id)
+                     : cp_fail(error, CP_BAD_INPUT,
+                               "%s: crash %lld became no crash under %s (its outcome: table "
+                               "counterfactual)",
+                               cp_store_path(store), (long long)crash->id, treatment);
     if (status == CP_OK) {
         crash->time_s = sqlite3_column_double(s.handle, 0);
         crash->description.closing_speed_m_s = sqlite3_column_double(s.handle, 1);
@@ -88,25 +157,12 @@ static cp_status take_side(const char *text, cp_contact_side *side, cp_error *er
     return cp_fail(error, CP_BAD_INPUT, "contact_side '%s' is unknown", text);
 }
 
-static const char READ_VEHICLE[] =
-    "SELECT v.cog_x_m, v.cog_y_m, v.yaw_rad, v.velocity_x_m_s, v.velocity_y_m_s, v.yaw_rate_rad_s, "
-    "v.speed_m_s, v.velocity_angle_rad, v.contact_side, v.sumo_id, v.vehicle_model, m.yaml, "
-    "v.length_m, v.width_m, coalesce(r.crash_options ->> 'covers_outline', 0), v.sumo_type, "
-    "instr(',' || v.validity || ',', ',no_model,') > 0 "
-    "FROM crash_vehicle AS v JOIN vehicle_model AS m ON m.name = v.vehicle_model "
-    "JOIN crash AS c ON c.id = v.crash_id JOIN replication AS r ON r.id = c.replication_id "
-    "WHERE v.crash_id = ?1 AND v.role = ?2";
-
 static cp_status read_vehicle(cp_store *store, int role, cp_stored_crash *crash, cp_error *error)
 {
     cp_statement s;
     int row = 0;
-    cp_status status =
-        cp_statement_prepare(store, "reading a vehicle of a crash", READ_VEHICLE, &s, error);
-    cp_bind_integer(&s, 1, crash->id);
-    cp_bind_text(&s, 2, ROLE[role]);
-    if (status == CP_OK)
-        status = cp_statement_row(&s, &row, error);
+    cp_status status = begin_reading(store, "reading a vehicle of a crash", READ_VEHICLE, crash,
+                                     role, &s, &row, error);
     if (status == CP_OK && !row)
         status = cp_fail(error, CP_BAD_INPUT, "%s: crash %lld has no vehicle %s",
                          cp_store_path(store), (long long)crash->id, ROLE[role]);
@@ -143,12 +199,14 @@ done:
     return status;
 }
 
-cp_status cp_stored_crash_read(cp_store *store, int64_t crash_id, cp_stored_crash *crash,
-                               cp_error *error)
+cp_status cp_stored_crash_read(cp_store *store, int64_t crash_id, const char *treatment,
+                               cp_stored_crash *crash, cp_error *error)
 {
     *crash = (cp_stored_crash){.id = crash_id};
     crash->configuration.barrier = cp_barrier_default();
-    cp_status status = read_crash(store, crash, error);
+    cp_status status = find_treatment(store, treatment, crash, error);
+    if (status == CP_OK)
+        status = read_crash(store, treatment, crash, error);
     for (int role = 0; status == CP_OK && role < 2; role++)
         status = read_vehicle(store, role, crash, error);
     return status;
@@ -202,20 +260,13 @@ done:
     return status;
 }
 
-static cp_status compare_pulse(cp_store *store, int64_t crash_id, int role, const cp_pulse *raw,
-                               cp_stored_match *match, cp_error *error)
+static cp_status compare_pulse(cp_store *store, const cp_stored_crash *crash, int role,
+                               const cp_pulse *raw, cp_stored_match *match, cp_error *error)
 {
     cp_statement s;
     int row = 0;
-    cp_status status = cp_statement_prepare(
-        store, "reading a pulse",
-        "SELECT codec, samples, sample_count, sample_interval_s FROM pulse WHERE crash_id = ?1 AND "
-        "role = ?2",
-        &s, error);
-    cp_bind_integer(&s, 1, crash_id);
-    cp_bind_text(&s, 2, ROLE[role]);
-    if (status == CP_OK)
-        status = cp_statement_row(&s, &row, error);
+    cp_status status =
+        begin_reading(store, "reading a pulse", READ_PULSE, crash, role, &s, &row, error);
     *match = CP_STORED_NOTHING;
     if (status == CP_OK && row)
         status = compare_found(&s, raw, match, error);
@@ -223,14 +274,15 @@ static cp_status compare_pulse(cp_store *store, int64_t crash_id, int role, cons
     return status;
 }
 
-cp_status cp_stored_crash_compare(cp_store *store, int64_t crash_id, const cp_crash_result *result,
-                                  cp_stored_match *match, cp_error *error)
+cp_status cp_stored_crash_compare(cp_store *store, const cp_stored_crash *crash,
+                                  const cp_crash_result *result, cp_stored_match *match,
+                                  cp_error *error)
 {
     *match = CP_STORED_SAME_BYTES;
     cp_status status = CP_OK;
     for (int role = 0; status == CP_OK && role < 2; role++) {
         cp_stored_match one;
-        status = compare_pulse(store, crash_id, role, &result->pulse[role], &one, error);
+        status = compare_pulse(store, crash, role, &result->pulse[role], &one, error);
         if (status == CP_OK && one > *match)
             *match = one;
     }

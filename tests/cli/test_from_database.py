@@ -39,6 +39,7 @@ def run(*words, expect=0):
 parser = argparse.ArgumentParser()
 parser.add_argument("--crashpulse", required=True)
 parser.add_argument("--network", required=True, help="folder of the crossing")
+parser.add_argument("--train", required=True, help="db/train_pulse_dictionary.py")
 arguments = parser.parse_args()
 crashpulse = arguments.crashpulse
 
@@ -75,10 +76,57 @@ with tempfile.TemporaryDirectory() as name:
         "--pulse", str(pulse), "--raw")
     assert page.stat().st_size > 10000 and len(pulse.read_text().splitlines()) > 400
 
+    # A dictionary for a next codec, trained on these pulses: zstd's magic number, the number 1, 4 KB.
+    dictionary = folder / "next.zdict"
+    run(sys.executable, arguments.train, str(dictionary), str(db))
+    content = dictionary.read_bytes()
+    assert content[:8] == b"\x37\xa4\x30\xec\x01\0\0\0" and 500 < len(content) <= 4096, len(content)
+
     # One car a little heavier than it was: another pulse, said and told by the exit code.
     with sqlite3.connect(db) as tampered:
         tampered.execute("UPDATE vehicle_model SET yaml = replace(yaml, '1500', '1501')")
     again = run(crashpulse, "crash", "--from", str(db), "--crash", str(crashes[0]), expect=1)
     assert "not the stored ones" in again.stderr, again.stderr
     assert "hashes of vehicle files" in run(crashpulse, "check", str(db), expect=1).stdout
-    print(f"{len(crashes)} crashes simulated again from the database alone")
+    # What crashes became under a treatment, too.
+    inputs.mkdir()
+    shutil.copytree(arguments.network, inputs / "net")
+    (inputs / "study.yaml").write_text(
+        STUDY.replace("paired_seeds", "counterfactual").replace(
+            "function: aeb}", "function: aeb, parameters: {ttc_s: 0.7, deceleration_m_s2: 5}}"))
+    (inputs / "car.yaml").write_text("vehicle: car\nparameters:\n  - {name: mass_kg, value: 1500}\n")
+    (inputs / "van.yaml").write_text("vehicle: van\nparameters:\n  - {name: mass_kg, value: 2100}\n")
+    pairs = folder / "pairs.db"
+    run(crashpulse, "run", str(inputs / "study.yaml"), "--db", str(pairs), "--jobs", "2")
+    shutil.rmtree(inputs)
+    checked = {row["what"]: row for row in csv.DictReader(
+        run(crashpulse, "check", str(pairs), "--format", "csv").stdout.splitlines())}
+    connection = sqlite3.connect(pairs)
+    treated = connection.execute("SELECT c.crash_id, v.name, c.time_s FROM counterfactual AS c JOIN "
+                                 "variant AS v ON v.id = c.variant_id").fetchall()
+    pulses = connection.execute("SELECT count(*) FROM counterfactual_pulse").fetchone()[0]
+    assert int(checked["stored pulses of treated vehicles"]["looked_at"]) == pulses > 0, checked
+    crashed = [(crash, variant) for crash, variant, time_s in treated if time_s is not None]
+    assert len(crashed) >= 2, treated
+    for crash, variant in crashed:
+        again = run(crashpulse, "crash", "--from", str(pairs), "--crash", str(crash), "--treatment",
+                    variant, "--format", "csv")
+        assert "byte for byte" in again.stderr and f"under {variant}" in again.stderr, again.stderr
+        for record in csv.DictReader(again.stdout.splitlines()):
+            stored = connection.execute(
+                "SELECT olc_g, olc_status, validity FROM counterfactual_vehicle WHERE crash_id = ? "
+                "AND role = ?", (crash, record["role"])).fetchone()
+            printed = float(record["olc_g"]) if record["olc_g"] else None
+            assert (printed, record["olc_status"], record["validity"]) == stored, (record, stored)
+    others = [crash for crash, _, time_s in treated if time_s is None]
+    for crash in others[:1]:
+        result = run(crashpulse, "crash", "--from", str(pairs), "--crash", str(crash), "--treatment",
+                     "aeb", expect=2)
+        assert "became no crash under aeb" in result.stderr, result.stderr
+    # Damage in them is found.
+    with connection:
+        connection.execute("UPDATE counterfactual_pulse SET samples = substr(samples, 1, 40) WHERE "
+                           "role = 'b' AND crash_id = ?", (crashed[0][0],))
+    assert f"vehicle b of crash {crashed[0][0]} under variant" in run(
+        crashpulse, "check", str(pairs), expect=1).stdout
+    print(f"{len(crashed)} treated crashes and {len(crashes)} crashes simulated again from the database alone")

@@ -73,13 +73,13 @@ static cp_stored_match simulate_again(cp_store *store, int64_t id)
     cp_stored_crash crash;
     cp_crash_result result;
     cp_stored_match match;
-    assert_ok(cp_stored_crash_read(store, id, &crash, &error), &error);
+    assert_ok(cp_stored_crash_read(store, id, NULL, &crash, &error), &error);
     assert_true(crash.model[0].mass_kg == 1500.25);
     assert_true(crash.options.duration_s == 0.15);
     assert_ok(cp_crash_simulate(&crash.model[0], &crash.model[1], &crash.configuration,
                                 &crash.options, &result, &error),
               &error);
-    assert_ok(cp_stored_crash_compare(store, id, &result, &match, &error), &error);
+    assert_ok(cp_stored_crash_compare(store, &crash, &result, &match, &error), &error);
     cp_crash_result_destroy(&result);
     return match;
 }
@@ -125,10 +125,14 @@ static void errors_name_what_is_missing(void **state)
     cp_error error = {0};
     cp_stored_crash crash;
     cp_store *store = open_simulated(*state, &id);
-    assert_int_equal(cp_stored_crash_read(store, 12, &crash, &error), CP_BAD_INPUT);
+    assert_int_equal(cp_stored_crash_read(store, 12, NULL, &crash, &error), CP_BAD_INPUT);
     assert_non_null(strstr(error.text, "has no crash 12"));
+    assert_int_equal(cp_stored_crash_read(store, id, "nothing", &crash, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "has no variant 'nothing'"));
+    assert_int_equal(cp_stored_crash_read(store, id, "aeb", &crash, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "became no crash under aeb"));
     change(*state, "UPDATE vehicle_model SET yaml = 'vehicle: car' || char(10) || 'colour: red'");
-    assert_int_equal(cp_stored_crash_read(store, id, &crash, &error), CP_BAD_INPUT);
+    assert_int_equal(cp_stored_crash_read(store, id, NULL, &crash, &error), CP_BAD_INPUT);
     assert_non_null(strstr(error.text, "vehicle_model car:2: Unexpected key: colour"));
     cp_store_close(store);
 }

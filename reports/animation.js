@@ -368,6 +368,14 @@
     cancelAnimationFrame(pending);
     pending = requestAnimationFrame(draw);
   });
+  // Address with #t=100: the moment of 100 ms; #t=100&view=front: of the fronts.
+  function goToFragment() {
+    const wanted = new URLSearchParams(window.location.hash.slice(1)), t = Number(wanted.get("t"));
+    if (wanted.get("view") === "front" || wanted.get("view") === "whole") byId("view").value = wanted.get("view");
+    if (wanted.has("t") && Number.isFinite(t)) { pause(); state.t = Math.max(0, Math.min(duration, t)); }
+  }
+  window.addEventListener("hashchange", () => { goToFragment(); draw(); });
+  goToFragment();
   setting();
   numbers();
   draw();

@@ -73,6 +73,19 @@ class Animation(unittest.TestCase):
     def count(self, selector):
         return self.browser.run("return document.querySelectorAll(arguments[0]).length", selector)
 
+    def test_address_names_a_moment(self):
+        page = self.wall.resolve().as_uri()
+        self.browser.open(page + "#t=60&view=front")
+        self.browser.settle()
+        self.assertEqual(self.text("#clock"), "60.0 ms")
+        self.assertEqual(self.browser.run("return document.getElementById('view').value"), "front")
+        self.browser.run("location.hash = '#t=1e9'")
+        self.browser.settle()
+        self.assertEqual(self.browser.run("const t = document.getElementById('time');"
+                                          "return t.value === t.max"), True)
+        self.browser.run("location.hash = '#t=soon'")
+        self.browser.settle()
+
     def test_requests_nothing_but_itself(self):
         self.open(self.wall)
         urls = []

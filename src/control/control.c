@@ -5,6 +5,7 @@
 #include "control/driver_error/ignored_foes.h"
 
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -181,6 +182,29 @@ bool cp_controls_is_at_fault(void *context, uint32_t vehicle)
             return true;
     }
     return false;
+}
+
+bool cp_controls_errs_alone(const cp_controls *controls, uint32_t vehicle)
+{
+    for (size_t k = 0; k < controls->count; k++) {
+        const active_control *active = &controls->active[k];
+        const cp_control_type *type = active->settings.type;
+        if (type->is_at_fault && !type->error_since_s && type->is_at_fault(active->state, vehicle))
+            return true;
+    }
+    return false;
+}
+
+double cp_controls_error_since_s(const cp_controls *controls, uint32_t vehicle, uint32_t other)
+{
+    double since_s = INFINITY;
+    for (size_t k = 0; k < controls->count; k++) {
+        const active_control *active = &controls->active[k];
+        const cp_control_type *type = active->settings.type;
+        if (type->error_since_s)
+            since_s = fmin(since_s, type->error_since_s(active->state, vehicle, other));
+    }
+    return since_s;
 }
 
 #define COUNTERS_MAX 16

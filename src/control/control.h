@@ -61,6 +61,10 @@ typedef struct cp_control_type {
                                     cp_error *error);
     /* Whether this control made the vehicle err (role a goes to the one at fault); may be NULL. */
     bool (*is_at_fault)(const void *state, uint32_t vehicle);
+    /* Of errors towards one particular other: the moment, SUMO clock, since which the vehicle has
+     * erred towards other without a break; INFINITY when it does not. May be NULL: the error is the
+     * vehicle's alone, as long as is_at_fault says so. */
+    double (*error_since_s)(const void *state, uint32_t vehicle, uint32_t other);
     /* What it did, e.g. {"activations": 12}; names static. May be NULL. */
     size_t (*counters)(const void *state, const char **names, double *values, size_t room);
     void (*destroy)(void *state);
@@ -102,6 +106,11 @@ void cp_controls_destroy(cp_controls *controls);
 CP_MUST_CHECK cp_status cp_controls_step(cp_controls *controls, cp_error *error);
 /* Signature fits cp_detector_step: context is the cp_controls. */
 bool cp_controls_is_at_fault(void *context, uint32_t vehicle);
+/* Whether a control makes the vehicle err whoever the other is. */
+bool cp_controls_errs_alone(const cp_controls *controls, uint32_t vehicle);
+/* Since when a control has had the vehicle err towards that other, SUMO clock; INFINITY: none does.
+ */
+double cp_controls_error_since_s(const cp_controls *controls, uint32_t vehicle, uint32_t other);
 /* Deceleration that the functions ask of a vehicle in the coming step, m/s^2; 0 for none. */
 double cp_controls_brake_request_m_s2(const cp_controls *controls, uint32_t vehicle);
 /* Counters of all controls, "aeb.activations" style, as one JSON object text; caller frees. */

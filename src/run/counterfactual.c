@@ -20,9 +20,9 @@
 /* What is known of a vehicle, by number; all zero before it is first seen. */
 typedef struct vehicle_past {
     double inserted_s;
-    double fault_since_s; /* first of the checkpoints at which it has been at fault since then */
+    double fault_since_s; /* first of the checkpoints at which it has erred alone since then */
     bool is_known;
-    bool was_at_fault; /* at the last checkpoint */
+    bool was_at_fault; /* erred alone at the last checkpoint */
 } vehicle_past;
 
 /* One crash of the baseline and its branches. */
@@ -315,16 +315,18 @@ static cp_status remember_inserted(cp_counterfactual *self, cp_error *error)
     return CP_OK;
 }
 
-// Earliest moment at which the error of a driver at fault can have begun; INFINITY of any other.
+// Earliest moment at which the error of a driver can have begun: towards the other of this crash,
+// or one whoever the other is; INFINITY without an error.
 static double error_onset_s(const cp_counterfactual *self, const cp_found_contact *found, int role)
 {
     const vehicle_past *past = &self->past[found->impact.vehicle[role]];
-    if (!found->at_fault[role])
-        return INFINITY;
+    double towards_s = found->error_since_s[role];
+    if (!found->errs_alone[role])
+        return towards_s;
     double onset_s = past->was_at_fault
                          ? past->fault_since_s - self->study->counterfactual.checkpoint_interval_s
                          : self->last_checkpoint_s;
-    return past->is_known ? fmax(onset_s, past->inserted_s) : onset_s;
+    return fmin(towards_s, past->is_known ? fmax(onset_s, past->inserted_s) : onset_s);
 }
 
 static bool is_inserted_late(const cp_counterfactual *self, const cp_found_contact *found)
@@ -406,7 +408,7 @@ static cp_status branch(cp_counterfactual *self, size_t index, cp_error *error)
     return status;
 }
 
-// Who is at fault now, and since which checkpoint without a break.
+// Who errs now whoever the other is, and since which checkpoint without a break.
 static void note_faults(cp_counterfactual *self, double time_s)
 {
     size_t count;
@@ -414,7 +416,7 @@ static void note_faults(cp_counterfactual *self, double time_s)
     for (size_t k = 0; k < count; k++) {
         uint32_t vehicle = motions[k].after.vehicle;
         vehicle_past *past = &self->past[vehicle];
-        bool is_at_fault = cp_controls_is_at_fault(self->simulation->controls, vehicle);
+        bool is_at_fault = cp_controls_errs_alone(self->simulation->controls, vehicle);
         if (is_at_fault && !past->was_at_fault)
             past->fault_since_s = time_s;
         past->was_at_fault = is_at_fault;

@@ -142,6 +142,11 @@ static cp_status remember_found(cp_simulation *simulation, const cp_impact *impa
         (cp_found_contact){.impact = *impact, .found_as = found_as, .follows = CP_FOLLOWS_NONE};
     for (int role = 0; role < 2; role++) {
         found->at_fault[role] = is_at_fault(simulation, impact->vehicle[role]);
+        found->errs_alone[role] =
+            found->at_fault[role] &&
+            cp_controls_errs_alone(simulation->controls, impact->vehicle[role]);
+        found->error_since_s[role] = cp_controls_error_since_s(
+            simulation->controls, impact->vehicle[role], impact->vehicle[1 - role]);
         found->had_crashed[role] = cp_traffic_is_held(simulation->traffic, impact->vehicle[role]);
         size_t earlier = found->had_crashed[role]
                              ? first_crash_of(simulation, impact->vehicle[role])

@@ -18,10 +18,12 @@ extern const char CP_FOUND_WARMUP[];      /* confirmed, but before the end of th
 
 typedef struct cp_found_contact {
     cp_impact impact;
-    const char *found_as; /* one of the above, or the verdict of a contact that is no crash */
-    bool at_fault[2];     /* a driver error is at work on it; never on a car that had crashed */
-    bool had_crashed[2];  /* it stands there since an earlier crash */
-    size_t follows;       /* index of that crash (of both cars' the first); CP_FOLLOWS_NONE */
+    const char *found_as;    /* one of the above, or the verdict of a contact that is no crash */
+    bool at_fault[2];        /* a driver error is at work on it; never on a car that had crashed */
+    bool errs_alone[2];      /* one that is at work whoever the other is */
+    double error_since_s[2]; /* SUMO clock: since when it has erred towards the other; INFINITY */
+    bool had_crashed[2];     /* it stands there since an earlier crash */
+    size_t follows;          /* index of that crash (of both cars' the first); CP_FOLLOWS_NONE */
 } cp_found_contact;
 
 /* What the two cars of a counted crash did before it. */

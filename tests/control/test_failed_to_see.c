@@ -125,12 +125,49 @@ static void fault_is_with_who_overlooked_the_one_close_by(void **unused)
     cp_traffic_destroy(traffic);
 }
 
+// Waiting opposite somebody overlooked is no error yet; setting off is, from that moment, towards
+// him alone. One who comes from afar is an error from a driver's time to react on.
+static void error_towards_one_begins_when_he_matters(void **unused)
+{
+    (void)unused;
+    cp_traffic *traffic = road_open(0.1);
+    cp_controls *controls = create(traffic, 1.0, 1);
+    road_add("waiting", 0.0, 0.0, 0.0, 0.0);
+    road_add("opposite", 10.0, 3.0, 3.14, 0.0);
+    road_add("coming", 100.0, 3.0, 3.14, 10.0);
+    for (int k = 0; k < 20; k++)
+        step(traffic, controls);
+    assert_true(isinf(cp_controls_error_since_s(controls, 0, 1)));
+
+    // Off at 2 s; the one who comes is at 80 m then, and within 15 m + 3 s * 10 m/s at 5.5 s or,
+    // as both move, a little before.
+    road.cars[0].state.speed_m_s = 1.0;
+    double coming_since_s = INFINITY;
+    for (int k = 0; k < 40; k++) {
+        step(traffic, controls);
+        assert_true(fabs(cp_controls_error_since_s(controls, 0, 1) - 2.1) < 1e-9);
+        double since_s = cp_controls_error_since_s(controls, 0, 2);
+        coming_since_s = isinf(coming_since_s) ? since_s : coming_since_s;
+        assert_true(since_s == coming_since_s);
+    }
+    assert_true(fabs(coming_since_s - 5.3) < 0.15);
+    assert_false(cp_controls_errs_alone(controls, 0));
+
+    // He stops: the error is over, and begins anew.
+    road.cars[0].state.speed_m_s = 0.0;
+    step(traffic, controls);
+    assert_true(isinf(cp_controls_error_since_s(controls, 0, 1)));
+    cp_controls_destroy(controls);
+    cp_traffic_destroy(traffic);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(certain_drivers_overlook_everybody_both_ways),
         cmocka_unit_test(attentive_drivers_get_no_command),
         cmocka_unit_test(a_pair_is_drawn_for_itself),
+        cmocka_unit_test(error_towards_one_begins_when_he_matters),
         cmocka_unit_test(fault_is_with_who_overlooked_the_one_close_by),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

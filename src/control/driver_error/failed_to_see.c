@@ -4,13 +4,22 @@
 #include "control/driver_error/ignored_foes.h"
 #include "core/geometry.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* "Looked but failed to see": for every ordered pair of vehicles on the road at the same time one
  * seeded draw decides whether the first overlooks the second at junctions for as long as both are
  * there. SUMO's own per-step knobs (jmIgnoreFoeProb) are drawn again in every step, so that their
- * effect would depend on the step length. */
+ * effect would depend on the step length.
+ *
+ * The draw is made long before it matters. The error towards one other begins when the driver goes
+ * on, or sets off, although the other is near or would be there within a driver's time to react; it
+ * ends when he stands or the other has gone by. */
+
+#define NEAR_M 15.0 /* front to front: a car's length and two steps */
+#define AHEAD_S 3.0 /* he who drives sees what would be there within this (assumed) */
+#define STANDS_M_S 0.1
 
 enum { PROBABILITY_1 };
 
@@ -20,9 +29,17 @@ static const cp_control_parameter PARAMETERS[] = {
                        "once per ordered pair (assumed; not calibrated to accident statistics)"},
 };
 
+/* An error towards one other at work. */
+typedef struct encounter {
+    uint32_t ego, foe;
+    double since_s;
+} encounter;
+
 typedef struct failed_to_see {
     const cp_traffic *traffic;
     cp_ignored_foes *ignored;
+    encounter *encounters, *before; /* at work now, and before the last step */
+    size_t encounter_count, encounter_capacity, before_count, before_capacity;
     bool *is_known; /* by vehicle number: drawn against all others on the road */
     size_t numbers;
     size_t pairs;      /* drawn */
@@ -43,6 +60,8 @@ static cp_status create(const cp_control_context *context, void **state, cp_erro
 static void destroy(void *state)
 {
     failed_to_see *self = state;
+    free(self->encounters);
+    free(self->before);
     free(self->is_known);
     free(self);
 }
@@ -94,6 +113,78 @@ static cp_status meet(failed_to_see *self, const cp_control_context *context, ui
     return CP_OK;
 }
 
+// ---- errors at work ------------------------------------------------------------------------
+
+static double distance_m(const cp_vehicle_motion *one, const cp_vehicle_motion *other)
+{
+    return hypot(other->after.front_x_m - one->after.front_x_m,
+                 other->after.front_y_m - one->after.front_y_m);
+}
+
+/* A look of one driver for those he overlooks. */
+typedef struct look {
+    failed_to_see *self;
+    const cp_vehicle_motion *own;
+    cp_status status;
+    cp_error *error;
+} look;
+
+// Since when; now if it has just begun.
+static double since_s(const failed_to_see *self, uint32_t ego, uint32_t foe)
+{
+    for (size_t k = 0; k < self->before_count; k++)
+        if (self->before[k].ego == ego && self->before[k].foe == foe)
+            return self->before[k].since_s;
+    return cp_traffic_time_s(self->traffic);
+}
+
+static void look_for_error(void *context, uint32_t foe_vehicle)
+{
+    look *looking = context;
+    failed_to_see *self = looking->self;
+    const cp_vehicle_motion *foe = cp_traffic_motion_of(self->traffic, foe_vehicle);
+    if (looking->status != CP_OK || !foe ||
+        distance_m(looking->own, foe) >= NEAR_M + AHEAD_S * foe->after.speed_m_s)
+        return;
+    if (self->encounter_count == self->encounter_capacity) {
+        size_t capacity = self->encounter_capacity == 0 ? 64 : 2 * self->encounter_capacity;
+        encounter *encounters = realloc(self->encounters, capacity * sizeof *encounters);
+        if (!encounters) {
+            looking->status = cp_fail_memory(looking->error, "failed_to_see");
+            return;
+        }
+        self->encounters = encounters;
+        self->encounter_capacity = capacity;
+    }
+    uint32_t ego = looking->own->after.vehicle;
+    self->encounters[self->encounter_count++] =
+        (encounter){ego, foe_vehicle, since_s(self, ego, foe_vehicle)};
+}
+
+// The errors at work after the step that has just been made.
+static cp_status note_errors(failed_to_see *self, cp_error *error)
+{
+    encounter *spare = self->before;
+    size_t spare_capacity = self->before_capacity, count;
+    self->before = self->encounters;
+    self->before_count = self->encounter_count;
+    self->before_capacity = self->encounter_capacity;
+    self->encounters = spare;
+    self->encounter_count = 0;
+    self->encounter_capacity = spare_capacity;
+
+    const cp_vehicle_motion *motions = cp_traffic_motions(self->traffic, &count);
+    cp_status status = CP_OK;
+    for (size_t k = 0; k < count && status == CP_OK; k++) {
+        look looking = {self, &motions[k], CP_OK, error};
+        if (motions[k].after.speed_m_s >= STANDS_M_S)
+            cp_ignored_foes_visit(self->ignored, motions[k].after.vehicle, CP_IGNORE_UNSEEN,
+                                  look_for_error, &looking);
+        status = looking.status;
+    }
+    return status;
+}
+
 static cp_status step(void *state, const cp_control_context *context, cp_error *error)
 {
     failed_to_see *self = state;
@@ -110,7 +201,7 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
         if (status != CP_OK)
             return status;
     }
-    return CP_OK;
+    return note_errors(self, error);
 }
 
 /* Whether one of those a driver overlooks is near him. */
@@ -122,11 +213,9 @@ typedef struct nearby {
 
 static void look_at(void *context, uint32_t foe_vehicle)
 {
-    const double near_m = 15.0; // front to front: a car's length and two steps
     nearby *found = context;
     const cp_vehicle_motion *foe = cp_traffic_motion_of(found->traffic, foe_vehicle);
-    found->is_near |= foe && hypot(foe->after.front_x_m - found->own->after.front_x_m,
-                                   foe->after.front_y_m - found->own->after.front_y_m) < near_m;
+    found->is_near |= foe && distance_m(found->own, foe) < NEAR_M;
 }
 
 // At fault now: somebody overlooked is right before or beside the car.
@@ -137,6 +226,15 @@ static bool is_at_fault(const void *state, uint32_t vehicle)
     if (found.own)
         cp_ignored_foes_visit(self->ignored, vehicle, CP_IGNORE_UNSEEN, look_at, &found);
     return found.is_near;
+}
+
+static double error_since_s(const void *state, uint32_t vehicle, uint32_t other)
+{
+    const failed_to_see *self = state;
+    for (size_t k = 0; k < self->encounter_count; k++)
+        if (self->encounters[k].ego == vehicle && self->encounters[k].foe == other)
+            return self->encounters[k].since_s;
+    return INFINITY;
 }
 
 static size_t counters(const void *state, const char **names, double *values, size_t room)
@@ -160,6 +258,7 @@ const cp_control_type CP_CONTROL_FAILED_TO_SEE = {
     .create = create,
     .step = step,
     .is_at_fault = is_at_fault,
+    .error_since_s = error_since_s,
     .counters = counters,
     .destroy = destroy,
 };

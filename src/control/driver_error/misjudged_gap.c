@@ -6,6 +6,7 @@
 #include "core/geometry.h"
 #include "core/units.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* Misjudged gap: a driver at a junction sees the other coming and takes the gap for large enough
@@ -35,6 +36,7 @@ static const cp_control_parameter PARAMETERS[] = {
 /* A decision that holds. */
 typedef struct decision {
     uint32_t ego, foe;
+    double since_s;
     double until_s;
 } decision;
 
@@ -90,8 +92,9 @@ static cp_status decide(misjudged_gap *self, const cp_control_context *context, 
         self->decisions = decisions;
         self->capacity = capacity;
     }
-    double until_s = cp_traffic_time_s(self->traffic) + context->parameter[HOLD_S];
-    self->decisions[self->count++] = (decision){ego, foe, until_s};
+    double now_s = cp_traffic_time_s(self->traffic);
+    self->decisions[self->count++] =
+        (decision){ego, foe, now_s, now_s + context->parameter[HOLD_S]};
     self->taken++;
     return cp_ignored_foes_add(self->ignored, ego, foe, CP_IGNORE_MISJUDGED, error);
 }
@@ -195,6 +198,16 @@ static bool is_at_fault(const void *state, uint32_t vehicle)
     return false;
 }
 
+// The error is the decision.
+static double error_since_s(const void *state, uint32_t vehicle, uint32_t other)
+{
+    const misjudged_gap *self = state;
+    for (size_t k = 0; k < self->count; k++)
+        if (self->decisions[k].ego == vehicle && self->decisions[k].foe == other)
+            return self->decisions[k].since_s;
+    return INFINITY;
+}
+
 static size_t counters(const void *state, const char **names, double *values, size_t room)
 {
     const misjudged_gap *self = state;
@@ -214,6 +227,7 @@ const cp_control_type CP_CONTROL_MISJUDGED_GAP = {
     .create = create,
     .step = step,
     .is_at_fault = is_at_fault,
+    .error_since_s = error_since_s,
     .counters = counters,
     .destroy = destroy,
 };

@@ -337,6 +337,57 @@
       return { summary: rows.map(r => `${r[0]}, ${r[1]}: ${fixed(r[2], 1)} g`).join("; "), columns: ["treatment", "change", "olc_g", "low", "high", "interval"], rows: rows };
     });
 
+  // ---- pairs one by one: OLC without and with the treatment -----------------------------------------
+
+  const inSlice = (columns, k) => (state.scenario === "" || data.scenarios[columns.scenario[k]] === state.scenario) &&
+    (state.crashType === "" || data.crash_types[columns.crash_type[k]] === state.crashType);
+
+  // Points {variant, baseline, treated, name}: a crash and what became of it, or a seed run with both.
+  function crashPairs() {
+    const c = data.pairs.crash;
+    return d3.range(c.variant.length).filter(k => state.variants.has(c.variant[k]) && inSlice(c, k)).map(k => ({ variant: c.variant[k], baseline: c.baseline_olc_g[k], treated: c.treated_olc_g[k],
+      name: `${data.scenarios[c.scenario[k]]}, ${data.crash_types[c.crash_type[k]]}, ${readable(c.outcome[k])}` }));
+  }
+  function seedPairs() {
+    const c = data.pairs.seed, suffix = state.scope === "inside" ? "_inside" : "", reference = data.variants.findIndex(v => v.is_baseline), points = [];
+    const means = d3.rollup(d3.range(c.variant.length).filter(k => inSlice(c, k) && c["vehicles" + suffix][k] > 0),
+      ks => d3.sum(ks, k => c["vehicles" + suffix][k] * c["mean_olc_g" + suffix][k]) / d3.sum(ks, k => c["vehicles" + suffix][k]),
+      k => c.scenario[k], k => c.number[k], k => c.variant[k]);
+    means.forEach((numbers, scenario) => numbers.forEach((own, number) => own.forEach((treated, variant) => {
+      if (variant !== reference && state.variants.has(variant) && own.has(reference))
+        points.push({ variant: variant, baseline: own.get(reference), treated: treated, name: `${data.scenarios[scenario]}, replication ${number}` });
+    })));
+    return points;
+  }
+  const pairs = () => (data.pairs.crash ? crashPairs() : seedPairs());
+  const seedsRun = () => d3.sum(data.pairs.seeds.filter((n, k) => !state.scenario || data.scenarios[k] === state.scenario));
+
+  if (data.pairs && data.pairs.crash) document.getElementById("figure-paired").dataset.query = "counterfactual_pairs";
+  const pairedFigure = !data.pairs ? null : figure("figure-paired", "OLC without and with the treatment, pair by pair",
+    () => (data.pairs.crash
+      ? "A point is a frontal crash of the baseline: across its OLC, up what it became with the treatment, 0 when avoided; the larger of its frontally struck vehicles."
+      : `A point is a seed run with both: mean OLC over ${scopeText()}. Of ${integer(seedsRun())} seeds, those with such a vehicle in both runs; traffic differs after the first intervention, so a pair is of seeds, not of crashes.`) +
+      " Below the line: less severe." + (data.pairs.crash ? thinned() : ""),
+    function (svg, width) {
+      const points = pairs(), top = legend(svg, width, [...new Set(points.map(p => p.variant))].sort(d3.ascending).map(v => ({ variant: v, label: `${data.variants[v].name} (n = ${points.filter(p => p.variant === v).length}, ${points.filter(p => p.variant === v && p.treated < p.baseline).length} lower)` })), pointMark);
+      const margin = { top: top + 4, right: 16, bottom: 48, left: 52 }, height = margin.top + Math.min(330, 140 + width * 0.35) + margin.bottom;
+      const reach = d3.max(points, p => Math.max(p.baseline, p.treated)) || 1;
+      const x = d3.scaleLinear().domain([0, reach]).nice().range([0, width - margin.left - margin.right]);
+      const y = d3.scaleLinear().domain([0, reach]).nice().range([height - margin.top - margin.bottom, 0]);
+      const inner = frame(svg, width, height, margin, x, y, "OLC with the baseline, g", "with the treatment, g");
+      inner.append("line").attr("x1", x(0)).attr("y1", y(0)).attr("x2", x(x.domain()[1])).attr("y2", y(y.domain()[1])).style("stroke", "var(--ink)").style("stroke-dasharray", "4 4");
+      const size = points.length > 500 ? 18 : 38;
+      points.forEach(p => inner.append("path").attr("class", "point").attr("d", symbol(p.variant, size)).attr("transform", `translate(${x(p.baseline)},${y(p.treated)})`)
+        .style("fill", colour(p.variant)).style("fill-opacity", 0.65).style("stroke", colour(p.variant)).style("stroke-width", 1.1)
+        .append("title").text(`${data.variants[p.variant].name}, ${p.name}: ${fixed(p.baseline, 1)} g, with the treatment ${fixed(p.treated, 1)} g`));
+      return height;
+    },
+    function () {
+      const points = pairs();
+      return { summary: `${points.length} pairs, ${points.filter(p => p.treated < p.baseline).length} less severe with the treatment`, columns: ["treatment", "pair", "baseline_olc_g", "treated_olc_g", "change_g"],
+        rows: points.map(p => [data.variants[p.variant].name, p.name, p.baseline, p.treated, p.treated - p.baseline]) };
+    });
+
   // ---- OLC against closing speed -------------------------------------------------------------------
 
   const scatterFigure = figure("figure-scatter", "OLC against closing speed",
@@ -790,7 +841,7 @@
 
   // ---- filters, theme, size ----------------------------------------------------------------------------
 
-  const drawings = [rateFigure, ecdfFigure, differenceFigure, scatterFigure, mapFigure, siteFigure, flowFigure, benefitFigure, corridorFigure, gallery].filter(Boolean);
+  const drawings = [rateFigure, ecdfFigure, differenceFigure, pairedFigure, scatterFigure, mapFigure, siteFigure, flowFigure, benefitFigure, corridorFigure, gallery].filter(Boolean);
   function update() {
     cards();
     [exposureTable, quantileTable, contrastTable, injuryTable, precisionTable, validityTable].forEach(draw => draw());
@@ -827,6 +878,7 @@
       update();
     };
   });
+  if (!pairedFigure) document.getElementById("figure-paired").remove();
   if (!flowFigure) document.getElementById("section-flow").remove();
   document.getElementById("filters").onsubmit = event => event.preventDefault();
   const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");

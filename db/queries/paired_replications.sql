@@ -1,11 +1,20 @@
 -- SPDX-License-Identifier: GPL-3.0-or-later
--- Seed by seed: frontal crashes of every treatment beside the baseline's in the replication with
--- the same scenario and number. In the paired design both ran the same demand and seed.
+-- Seed by seed: frontal crashes of every treatment, and the mean OLC of their frontally struck
+-- vehicles, beside the baseline's in the replication with the same scenario and number. In the paired
+-- design both ran the same demand and seed. Without a vehicle with an OLC the mean is NULL.
+WITH severity AS (
+    SELECT replication_id, avg(olc_g) AS mean_olc_g
+    FROM frontal_vehicle
+    GROUP BY replication_id
+)
 SELECT b.scenario, b.replication, b.seed, t.variant AS treatment,
        b.frontal_crashes AS baseline_crashes, t.frontal_crashes AS treatment_crashes,
-       t.frontal_crashes - b.frontal_crashes AS difference
+       t.frontal_crashes - b.frontal_crashes AS difference,
+       round(bs.mean_olc_g, 1) AS baseline_mean_olc_g, round(ts.mean_olc_g, 1) AS treatment_mean_olc_g
 FROM replication_crashes AS b
 JOIN variant AS v ON v.id = b.variant_id AND v.is_baseline = 1
 JOIN replication_crashes AS t ON t.scenario_id = b.scenario_id AND t.replication = b.replication
                              AND t.variant_id <> b.variant_id
+LEFT JOIN severity AS bs ON bs.replication_id = b.replication_id
+LEFT JOIN severity AS ts ON ts.replication_id = t.replication_id
 ORDER BY b.scenario, t.variant, b.replication;

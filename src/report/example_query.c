@@ -11,6 +11,7 @@
     X(paired_replications)                                                                         \
     X(crash_sites)                                                                                 \
     X(counterfactual_outcomes)                                                                     \
+    X(counterfactual_pairs)                                                                        \
     X(expected_injuries)                                                                           \
     X(pulses)                                                                                      \
     X(worst_crashes)                                                                               \

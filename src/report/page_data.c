@@ -8,6 +8,7 @@
 #include "report/example_query.h"
 #include "report/gallery.h"
 #include "report/network.h"
+#include "report/paired_points.h"
 #include "report/query_json.h"
 #include "report/slice_sample.h"
 
@@ -67,14 +68,22 @@ static json_t *drawn_json(double value)
     return cp_number_json(round(value * 1e4) / 1e4);
 }
 
-// Whether a frontal crash is drawn: by the seed and its id only, so that it is with every filter.
-static bool is_drawn(const cp_study_data *data, const cp_study_crash *crash, double chance)
+// Which frontal crashes are drawn: by the seed and their id only, so that each is with every
+// filter. Returns the chance of each and counts them all.
+static double choose_drawn(const cp_study_data *data, bool *drawn, size_t *frontal)
 {
+    *frontal = 0;
+    for (size_t k = 0; k < data->crash_count; k++)
+        *frontal += data->crash[k].frontal;
+    double chance = *frontal > CP_PAGE_CRASHES_MAX ? CP_PAGE_CRASHES_MAX / (double)*frontal : 1.0;
     cp_rng_key key = cp_rng_key_text(cp_rng_key_seed(data->seed), "report sample");
-    return crash->frontal && cp_rng_uniform(key, (uint64_t)crash->id) < chance;
+    for (size_t k = 0; k < data->crash_count; k++)
+        drawn[k] =
+            data->crash[k].frontal && cp_rng_uniform(key, (uint64_t)data->crash[k].id) < chance;
+    return chance;
 }
 
-static json_t *vehicles_json(const cp_study_data *data, double chance)
+static json_t *vehicles_json(const cp_study_data *data, const bool *drawn)
 {
     enum {
         VARIANT,
@@ -111,7 +120,7 @@ static json_t *vehicles_json(const cp_study_data *data, double chance)
     for (size_t k = 0; k < data->vehicle_count; k++) {
         const cp_study_vehicle *v = &data->vehicle[k];
         const cp_study_crash *crash = &data->crash[v->crash];
-        if (!v->frontal || !is_drawn(data, crash, chance))
+        if (!v->frontal || !drawn[v->crash])
             continue;
         const cp_study_replication *r = &data->replication[crash->replication];
         json_array_append_new(column[VARIANT], json_integer((json_int_t)r->variant));
@@ -326,8 +335,12 @@ typedef struct page_parts {
     json_t *counts;
     json_t *networks;
     json_t *gallery;
+    json_t *pairs;
     cp_corridor_pulses pulses;
     unsigned char *chosen;
+    bool *drawn; /* of each crash */
+    size_t frontal;
+    double chance;
 } page_parts;
 
 static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t baseline,
@@ -336,8 +349,10 @@ static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t b
 {
     p->slices = json_array();
     p->chosen = calloc(data->vehicle_count + 1, sizeof *p->chosen);
-    if (!p->slices || !p->chosen)
+    p->drawn = calloc(data->crash_count + 1, sizeof *p->drawn);
+    if (!p->slices || !p->chosen || !p->drawn)
         return cp_fail_memory(error, "the data of a report");
+    p->chance = choose_drawn(data, p->drawn, &p->frontal);
     cp_status status = cp_corridor_read(store, data, &p->pulses, error);
     slice_extras extras = {data, &p->pulses, p->chosen};
     if (status == CP_OK)
@@ -348,6 +363,8 @@ static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t b
         status = networks_json(store, data, &p->networks, error);
     if (status == CP_OK)
         status = cp_gallery_json(store, data, &p->gallery, error);
+    if (status == CP_OK)
+        status = cp_paired_points_json(data, p->drawn, &p->pairs, error);
     return status;
 }
 
@@ -360,23 +377,19 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     page_parts p = {0};
     cp_status status = make_parts(store, data, baseline, options, &p, answer_all, error);
     if (status == CP_OK) {
-        size_t frontal = 0;
-        for (size_t k = 0; k < data->crash_count; k++)
-            frontal += data->crash[k].frontal;
-        double chance = frontal > CP_PAGE_CRASHES_MAX ? CP_PAGE_CRASHES_MAX / (double)frontal : 1.0;
         *page = json_pack(
-            "{s:O, s:O, s:I, s:o, s:o, s:o, s:o, s:O, s:O, s:o, s:o, s:O, s:O, s:o, s:o}", "study",
-            json_array_get(json_object_get(data->about, "study"), 0), "about", data->about,
+            "{s:O, s:O, s:I, s:o, s:o, s:o, s:o, s:O, s:O, s:o, s:o, s:O, s:O, s:O, s:o, s:o}",
+            "study", json_array_get(json_object_get(data->about, "study"), 0), "about", data->about,
             "unfinished", (json_int_t)data->unfinished, "scenarios", scenarios_json(data),
             "crash_types", texts_json(data->crash_type, frontal_types(data)), "variants",
             variants_json(data, baseline), "validity",
             texts_json(data->validity, data->validity_count), "validity_counts", p.counts, "slices",
-            p.slices, "vehicles", vehicles_json(data, chance), "sample",
-            json_pack("{s:f, s:o, s:I, s:I}", "chance", chance, "seed",
+            p.slices, "vehicles", vehicles_json(data, p.drawn), "sample",
+            json_pack("{s:f, s:o, s:I, s:I}", "chance", p.chance, "seed",
                       json_sprintf("%llu", (unsigned long long)data->seed), "frontal_crashes",
-                      (json_int_t)frontal, "pulses", (json_int_t)CP_CORRIDOR_PULSES_MAX),
-            "networks", p.networks, "gallery", p.gallery, "risks", risks_json(data), "queries",
-            queries_json());
+                      (json_int_t)p.frontal, "pulses", (json_int_t)CP_CORRIDOR_PULSES_MAX),
+            "networks", p.networks, "gallery", p.gallery, "pairs", p.pairs, "risks",
+            risks_json(data), "queries", queries_json());
         if (!*page)
             status = cp_fail_memory(error, "the data of a report");
     }
@@ -384,8 +397,10 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     json_decref(p.counts);
     json_decref(p.networks);
     json_decref(p.gallery);
+    json_decref(p.pairs);
     cp_corridor_destroy(&p.pulses);
     free(p.chosen);
+    free(p.drawn);
     return status;
 }
 

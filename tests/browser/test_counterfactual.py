@@ -45,6 +45,17 @@ class Counterfactual(unittest.TestCase):
         self.assertIn("avoided = 0 g", text)
         self.assertIn("conditional on crashing", text)
 
+    def test_every_valid_pair_is_a_point(self):
+        self.browser.run("""const s = document.getElementById("scenario"); s.value = ""; s.dispatchEvent(new Event("change"));""")
+        shown = self.browser.run("return document.querySelectorAll('#figure-paired .point').length")
+        lower = self.browser.run("return document.getElementById('figure-paired').querySelector('svg').getAttribute('aria-label')")
+        pairs, less = self.db.execute("""SELECT count(*), sum(treated_olc_g < baseline_olc_g) FROM counterfactual_pair
+            WHERE baseline_crash_type LIKE 'front-%' AND outcome <> 'invalid' AND baseline_olc_g IS NOT NULL
+            AND treated_olc_g IS NOT NULL""").fetchone()
+        self.assertGreater(pairs, 3)
+        self.assertEqual(shown, pairs)
+        self.assertIn(f"{pairs} pairs, {less} less severe", lower)
+
     def test_console_is_quiet_and_a_picture_is_left(self):
         self.assertEqual([e["message"] for e in self.browser.log("browser")], [])
         self.browser.run("document.getElementById('figure-flow').scrollIntoView()")

@@ -20,7 +20,7 @@ ARGS = parser.parse_args()
 OUTPUT = pathlib.Path(ARGS.output)
 REPORT = OUTPUT / "report.html"
 
-FIGURES = ["figure-rate", "figure-ecdf", "figure-difference", "figure-scatter", "figure-map", "figure-sites",
+FIGURES = ["figure-rate", "figure-ecdf", "figure-difference", "figure-paired", "figure-scatter", "figure-map", "figure-sites",
            "figure-benefit"]
 # In this order, from the question to what repeats the study.
 SECTIONS = ["h-variants", "h-design", "h-rates", "h-quantiles", "h-contrasts", "h-where", "h-injuries", "h-pulses",
@@ -132,6 +132,23 @@ class Report(unittest.TestCase):
             return row[5];""")
         self.assertEqual(shown, f"{wanted:.2f}")
 
+    def test_a_pair_is_a_seed_run_with_both(self):
+        for scenario, crash_type, scope in (("", "", "all"), ("left_turn", "front-side", "all"), ("", "front-front", "inside")):
+            self.choose(scenario, crash_type, scope)
+            rows = self.db.execute("""
+                WITH seen AS (SELECT r.scenario_id, r.number, r.variant_id, avg(w.olc_g) AS olc_g
+                    FROM frontal_vehicle AS w JOIN crash AS c ON c.id = w.crash_id JOIN replication AS r ON r.id = c.replication_id
+                    WHERE w.olc_g IS NOT NULL AND (?1 = '' OR w.scenario = ?1) AND (?2 = '' OR w.crash_type = ?2)
+                      AND (?3 = 'all' OR w.validity = 'inside') GROUP BY 1, 2, 3)
+                SELECT s.name || ', replication ' || b.number, b.olc_g, t.olc_g FROM seen AS b
+                JOIN variant AS v ON v.id = b.variant_id AND v.is_baseline = 1
+                JOIN seen AS t ON t.scenario_id = b.scenario_id AND t.number = b.number AND t.variant_id <> b.variant_id
+                JOIN scenario AS s ON s.id = b.scenario_id""", (scenario, crash_type, scope)).fetchall()
+            shown = self.browser.run("return Array.from(document.querySelectorAll('#figure-paired .point title')).map(t => t.textContent)")
+            wanted = [f"aeb, {name}: {baseline:.1f} g, with the treatment {treated:.1f} g" for name, baseline, treated in rows]
+            self.assertGreater(len(wanted), 0)
+            self.assertEqual(sorted(shown), sorted(wanted))
+
     def test_pointer_reads_values(self):
         text = self.browser.run("""
             const rect = document.querySelector("#figure-ecdf rect[style*='transparent']"), box = rect.getBoundingClientRect();
@@ -202,6 +219,58 @@ class Report(unittest.TestCase):
             return Array.from(document.querySelectorAll("select, input, button")).filter(n =>
                 !n.closest("label") && !n.getAttribute("aria-label") && !n.textContent.trim()).length""")
         self.assertEqual(unlabelled, 0)
+
+    def test_the_keyboard_alone_reaches_and_works_everything(self):
+        reachable = self.browser.run("""
+            return Array.from(document.querySelectorAll("select, input, button, summary, [tabindex='0'], a[href]"))
+                .filter(n => n.checkVisibility() && !n.disabled).length""")
+        # The radio buttons are one stop.
+        radios = self.browser.run("return document.querySelectorAll('input[type=radio]').length") - \
+            self.browser.run("return new Set(Array.from(document.querySelectorAll('input[type=radio]')).map(r => r.name)).size")
+        self.browser.run("window.stops = new Set(); document.addEventListener('focusin', e => window.stops.add(e.target)); document.body.focus()")
+        for _ in range(reachable + 5):
+            self.browser.press("Tab")
+        stops, unseen = self.browser.run("""
+            return [window.stops.size, Array.from(window.stops).filter(n => { n.focus(); return getComputedStyle(n).outlineStyle === "none" && !n.classList.contains("skip"); }).length]""")
+        self.assertGreaterEqual(stops, reachable - radios)
+        self.assertEqual(unseen, 0, "the focus cannot be seen")
+
+        # A filter, a scope, a variant and a table by keys.
+        self.browser.run("document.getElementById('scenario').focus()")
+        self.browser.press("ArrowDown")
+        self.assertEqual(self.browser.run("return document.getElementById('scenario').value"), "left_turn")
+        self.assertEqual(self.card("baseline", "frontal_crashes"), str(self.count(
+            "SELECT count(*) FROM crash_list WHERE frontal AND variant = 'baseline' AND scenario = 'left_turn'")))
+        self.browser.run("document.querySelector(\"#variants input[value='aeb']\").focus()")
+        self.browser.press("Space")
+        self.assertEqual(self.browser.run("return document.querySelectorAll('#cards .card').length"), 1)
+        self.browser.run("document.querySelector('#figure-ecdf details summary').focus()")
+        self.browser.press("Enter")
+        self.browser.settle()
+        self.assertGreater(self.browser.run("return document.querySelectorAll('#figure-ecdf table tbody tr').length"), 0)
+
+    def test_prints_whole(self):
+        self.browser.resize(718, 1000)
+        self.browser.run("document.documentElement.dataset.theme === 'dark' || document.getElementById('theme').click()")
+        self.browser.media("print")
+        try:
+            self.browser.settle()
+            self.assertFalse(self.browser.run("return document.querySelector('.filters').checkVisibility()"))
+            self.assertFalse(self.browser.run("return document.querySelector('.tools').checkVisibility()"))
+            for figure in FIGURES:
+                inside = self.browser.run("""
+                    const svg = document.getElementById(arguments[0]).querySelector("svg").getBoundingClientRect();
+                    return svg.width > 200 && svg.left >= 0 && svg.right <= document.documentElement.clientWidth;""", figure)
+                self.assertTrue(inside, f"{figure} does not fit the paper")
+            self.assertEqual(self.browser.run("return getComputedStyle(document.body).backgroundColor"),
+                             "rgb(255, 255, 255)", "dark paper")
+        finally:
+            self.browser.media("screen")
+            self.browser.run("document.getElementById('theme').click()")
+        pdf = self.browser.pdf()
+        (OUTPUT / "report.pdf").write_bytes(pdf)
+        pages = len(re.findall(rb"/Type\s*/Page\b", pdf))
+        self.assertTrue(4 <= pages <= 40, f"{pages} pages")
 
     def test_three_widths_and_two_themes(self):
         for width in (390, 768, 1440):

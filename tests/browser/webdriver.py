@@ -80,6 +80,20 @@ class Browser:
             "cmd": "Emulation.setDeviceMetricsOverride",
             "params": {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}})
 
+    def press(self, *keys):
+        """Keys one after the other, as a user would: "Tab", "Enter", "Space", "ArrowDown" or a letter."""
+        code = {"Tab": "\ue004", "Enter": "\ue007", "Space": " ", "ArrowDown": "\ue015"}
+        strokes = [{"type": kind, "value": code.get(key, key)} for key in keys for kind in ("keyDown", "keyUp")]
+        self._call("POST", "/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": strokes}]})
+
+    def media(self, kind):
+        """Show the page as on "screen" or in "print"."""
+        self._call("POST", "/goog/cdp/execute", {"cmd": "Emulation.setEmulatedMedia", "params": {"media": kind}})
+
+    def pdf(self):
+        """The page as printed on A4."""
+        return base64.b64decode(self._call("POST", "/print", {"page": {"width": 21.0, "height": 29.7}}))
+
     def settle(self):
         """Return after the page has drawn: two animation frames later."""
         self._call("POST", "/execute/async", {"args": [], "script":

@@ -1,12 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# test_queries.sh DATABASE EXTENSION FOLDER: every file of db/queries runs by the stock sqlite3 with
+# test_queries.sh DATABASE COUNTERFACTUAL EXTENSION FOLDER: every file of db/queries runs by the stock sqlite3 with
 # the extension loaded, opens with a comment, writes nothing, gives exactly the rows recorded in
 # golden/, and agrees with what is counted another way. What was seen is left in FOLDER.
 set -eu
 db=$1
-extension=$2
-seen=$3
+counterfactual=$2
+extension=$3
+seen=$4
 golden=$(dirname "$0")/golden
 mkdir -p "$seen"
 # The small study with pulses in it.
@@ -36,8 +37,12 @@ sum() {
     sqlite3 -readonly -batch -bail "$db" <"$queries/$2.sql" | awk -F'|' -v c="$1" '{ s += $c } END { print s + 0 }'
 }
 
+study=$db
 for file in "$queries"/*.sql; do
     name=$(basename "$file")
+    # Pairs are only in a counterfactual study.
+    db=$study
+    [ "$name" != counterfactual_pairs.sql ] || db=$counterfactual
     sed -n 2p "$file" | grep -q '^-- [A-Z]' || fail "$name: the second line says what it asks"
     name=${name%.sql}
     shell <"$file" >"$seen/$name.out" || fail "$name: does not run"
@@ -48,6 +53,7 @@ for file in "$queries"/*.sql; do
         sqlite3 -readonly -batch -bail "$db" <"$file" | diff -q - "$seen/$name.out" >/dev/null ||
         fail "$name: needs the extension and does not say so"
 done
+db=$study
 [ "$(ls "$queries"/*.sql | wc -l)" -ge 20 ] || fail "fewer than twenty queries"
 
 one() {
@@ -63,6 +69,9 @@ expect "vehicles of validity" "$(sum 4 validity)" \
     "$(one 'SELECT count(*) FROM crash_vehicle WHERE frontal = 1')"
 expect "treatment crashes of paired_replications" "$(sum 6 paired_replications)" \
     "$(one "SELECT frontal_crashes FROM olc_by_variant WHERE variant = 'aeb'")"
+expect "pairs of counterfactual_pairs" "$(wc -l <"$seen/counterfactual_pairs.out" | tr -d ' ')" \
+    "$(sqlite3 -readonly "$counterfactual" "SELECT count(*) FROM counterfactual AS x JOIN crash AS c ON c.id = x.crash_id
+        WHERE x.outcome <> 'invalid' AND c.crash_type LIKE 'front-%' AND x.outcome_olc <> 'no_olc'")"
 expect "highest OLC of worst_crashes" \
     "$(sqlite3 -readonly "$db" <"$queries/worst_crashes.sql" | head -1 | cut -d'|' -f7)" \
     "$(one 'SELECT round(max(olc_g), 1) FROM crash_vehicle')"

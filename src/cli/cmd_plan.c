@@ -95,6 +95,11 @@ static cp_status look_into_database(const char *db_path, planned *p, cp_error *e
     status = p->state != NULL ? cp_plan_rows_compare(store, &p->rows, p->state, &p->dropped, error)
                               : cp_fail_memory(error, "plan");
     cp_store_close(store);
+    // Of another study's database nothing can be told.
+    if (p->state != NULL && p->state[0] == CP_PLANNED_UNKNOWN) {
+        free(p->state);
+        p->state = NULL;
+    }
     return status;
 }
 
@@ -108,11 +113,9 @@ static void release(planned *p)
 
 // ---- tables --------------------------------------------------------------------------------
 
-static const char *const STATE_TEXT[] = {[CP_PLANNED_NEW] = "new",
-                                         [CP_PLANNED_WAITING] = "planned",
-                                         [CP_PLANNED_RUNNING] = "running",
-                                         [CP_PLANNED_DONE] = "done",
-                                         [CP_PLANNED_FAILED] = "failed"};
+static const char *const STATE_TEXT[] = {
+    [CP_PLANNED_UNKNOWN] = "unknown", [CP_PLANNED_NEW] = "new",   [CP_PLANNED_WAITING] = "planned",
+    [CP_PLANNED_RUNNING] = "running", [CP_PLANNED_DONE] = "done", [CP_PLANNED_FAILED] = "failed"};
 enum { STATES = sizeof STATE_TEXT / sizeof *STATE_TEXT };
 
 static void add_each(const planned *p, cp_table *table)
@@ -167,7 +170,7 @@ static cp_status add_groups(const planned *p, cp_format format, cp_table *table,
             cp_table_text(table, p->study.scenarios[s].name);
             cp_table_text(table, p->study.variants[v].name);
             cp_table_integer(table, (int64_t)here[0]);
-            for (size_t state = 0; p->state != NULL && state < STATES; state++)
+            for (size_t state = CP_PLANNED_NEW; p->state != NULL && state < STATES; state++)
                 cp_table_integer(table, (int64_t)here[1 + state]);
             if (format == CP_FORMAT_JSON)
                 cp_table_json(table, swept_json(&p->study.scenarios[s], &p->study.variants[v]));
@@ -189,7 +192,7 @@ static cp_status print_plan(const planned *p, const arguments *a, cp_error *erro
         cp_table_begin(&table, EACH_COLUMN, p->state != NULL ? 6 : 5);
         add_each(p, &table);
     } else {
-        for (size_t state = 0; p->state != NULL && state < STATES; state++)
+        for (size_t state = CP_PLANNED_NEW; p->state != NULL && state < STATES; state++)
             group_column[columns++] = STATE_TEXT[state];
         if (a->format == CP_FORMAT_JSON)
             group_column[columns++] = "swept";

@@ -55,6 +55,11 @@ static const char DIFFERENCE[] =
     "FROM study AS o, temp.planned_study AS n UNION ALL "
     "SELECT 'vehicle model ' || n.name, o.hash, n.hash "
     "FROM vehicle_model AS o JOIN temp.planned_vehicle_model AS n USING (name) UNION ALL "
+    "SELECT 'vehicle model ' || name, 'not part of the study', hash FROM "
+    "temp.planned_vehicle_model "
+    "WHERE name NOT IN (SELECT name FROM vehicle_model) UNION ALL "
+    "SELECT 'vehicle model ' || name, hash, 'not part of the study' FROM vehicle_model "
+    "WHERE name NOT IN (SELECT name FROM temp.planned_vehicle_model) UNION ALL "
     "SELECT 'scenario ' || n.name || ': sumocfg', o.sumocfg, n.sumocfg "
     "FROM scenario AS o JOIN temp.planned_scenario AS n USING (id) WHERE id = ?1 UNION ALL "
     "SELECT 'scenario ' || n.name || ': sumo_options', o.sumo_options, n.sumo_options "
@@ -64,7 +69,13 @@ static const char DIFFERENCE[] =
     "SELECT 'scenario ' || n.name || ': files (SHA-256)', o.files, n.files "
     "FROM scenario AS o JOIN temp.planned_scenario AS n USING (id) WHERE id = ?1 UNION ALL "
     "SELECT 'variant ' || n.name || ': functions', o.functions, n.functions "
-    "FROM variant AS o JOIN temp.planned_variant AS n USING (id) WHERE id = ?2) "
+    "FROM variant AS o JOIN temp.planned_variant AS n USING (id) WHERE id = ?2 UNION ALL "
+    // A counterfactual replication depends on all treatments.
+    "SELECT 'treatment ' || n.name, coalesce(o.functions, 'not there'), n.functions "
+    "FROM study JOIN temp.planned_variant AS n LEFT JOIN variant AS o ON o.id = n.id "
+    "WHERE design = 'counterfactual' UNION ALL "
+    "SELECT 'treatment ' || o.name, o.functions, 'not there' FROM study JOIN variant AS o "
+    "WHERE design = 'counterfactual' AND o.id NOT IN (SELECT id FROM temp.planned_variant)) "
     "SELECT what, was, is_now FROM d WHERE was IS NOT is_now LIMIT 1";
 
 static cp_status execute(cp_store *store, const char *sql, cp_error *error)
@@ -268,7 +279,9 @@ static cp_status check_results_agree(cp_store *store, cp_error *error)
     status = find_difference(store, &s, difference, sizeof difference, error);
     if (status == CP_OK && difference[0] == '\0')
         snprintf(difference, sizeof difference,
-                 missing ? "the study file plans it no more" : "a vehicle file has changed");
+                 missing ? "the study file plans it no more"
+                         : "the section counterfactual has changed, or this crashpulse describes "
+                           "configurations in another way");
     if (status == CP_OK)
         status = cp_fail(error, CP_BAD_INPUT,
                          "%s: has results of another configuration (scenario %s, variant %s, "
@@ -412,6 +425,8 @@ cp_status cp_plan_rows_compare(cp_store *store, const cp_plan_rows *rows, cp_pla
                                size_t *dropped, cp_error *error)
 {
     int64_t count = 0;
+    for (size_t k = 0; k < rows->replication_count; k++)
+        state[k] = CP_PLANNED_UNKNOWN;
     cp_status status = prepare_all(store, rows, error);
     if (status == CP_OK)
         status = read_states(store, rows, state, error);

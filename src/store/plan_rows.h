@@ -94,7 +94,8 @@ CP_MUST_CHECK cp_status cp_plan_rows_write(cp_store *store, const cp_plan_rows *
 
 /* What the database knows of a planned replication. */
 typedef enum cp_planned_state {
-    CP_PLANNED_NEW, /* nothing yet */
+    CP_PLANNED_UNKNOWN, /* the database is not of this study or could not be read */
+    CP_PLANNED_NEW,     /* nothing yet */
     CP_PLANNED_WAITING,
     CP_PLANNED_RUNNING,
     CP_PLANNED_DONE,

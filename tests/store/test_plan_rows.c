@@ -49,6 +49,37 @@ static void contradiction_is_refused_by_name(void **state)
     cp_store_close(store);
 }
 
+// A replication of a counterfactual study depends on treatments that are not its own variant, and
+// any on the vehicle models there are.
+static void difference_is_found_where_it_is(void **state)
+{
+    small_plan plan;
+    cp_error error = {0};
+    cp_store *store = open_planned(*state, &plan);
+    finish_replication_with(store, &plan, 0, NULL, 0);
+    strcpy(plan.replication[0].configuration_hash, "changed");
+    assert_int_equal(cp_plan_rows_write(store, &plan.rows, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "the section counterfactual has changed, or"));
+    plan.model.name = "bus";
+    assert_int_equal(cp_plan_rows_write(store, &plan.rows, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "vehicle model bus was 'not part of the study'"));
+    plan.model.name = "car";
+    cp_store_close(store);
+
+    char command[256];
+    const fixture *f = *state;
+    snprintf(command, sizeof command, "sqlite3 '%s' \"UPDATE study SET design = 'counterfactual'\"",
+             f->db);
+    assert_int_equal(system(command), 0);
+    assert_ok(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), &error);
+    plan.rows.study.design = "counterfactual";
+    plan.variant[1].functions = "[]";
+    assert_int_equal(cp_plan_rows_write(store, &plan.rows, &error), CP_BAD_INPUT);
+    assert_non_null(
+        strstr(error.text, "treatment aeb was '[{\"function\":\"aeb\"}]', is now '[]'"));
+    cp_store_close(store);
+}
+
 static void other_seed_is_refused_by_name(void **state)
 {
     small_plan plan;
@@ -105,6 +136,13 @@ static void comparing_tells_what_is_done_and_changes_nothing(void **state)
                      CP_BAD_INPUT);
     assert_int_equal(known[2], CP_PLANNED_DONE);
     assert_true(number_of(store, "SELECT count(*) FROM replication WHERE seed = 999") == 0);
+
+    // Of another study nothing is known.
+    plan.rows.study.name = "large";
+    assert_int_equal(cp_plan_rows_compare(store, &plan.rows, known, &dropped, &error),
+                     CP_BAD_INPUT);
+    assert_int_equal(known[2], CP_PLANNED_UNKNOWN);
+    plan.rows.study.name = "small";
 
     // A connection that only reads can do it too.
     cp_store *reader = NULL;
@@ -181,6 +219,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(plan_can_grow_and_shrink_where_nothing_is_done,
                                         fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(contradiction_is_refused_by_name, fixture_begin,
+                                        fixture_end),
+        cmocka_unit_test_setup_teardown(difference_is_found_where_it_is, fixture_begin,
                                         fixture_end),
         cmocka_unit_test_setup_teardown(other_seed_is_refused_by_name, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(finished_replications_cannot_be_dropped, fixture_begin,

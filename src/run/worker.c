@@ -73,7 +73,7 @@ cp_status cp_worker_run(const char *study_path, const char *db_path, int64_t rep
     if (status == CP_OK)
         status = cp_fleet_load(&study, &fleet, error);
     if (status == CP_OK)
-        status = cp_plan_create(&study, fleet.rows, fleet.count, &plan, error);
+        status = cp_plan_create_for(&study, fleet.rows, fleet.count, replication_id, &plan, error);
     if (status != CP_OK)
         goto done;
 

@@ -280,7 +280,9 @@ static cp_status hash_configuration(const cp_study *study, const cp_plan_rows *r
     return CP_OK;
 }
 
-static cp_status fill_replications(const cp_study *study, cp_plan_rows *rows, cp_error *error)
+// only: hash this one; NULL: all of them.
+static cp_status fill_replications(const cp_study *study, const int64_t *only, cp_plan_rows *rows,
+                                   cp_error *error)
 {
     size_t total = study->scenario_count * study->variant_count * study->replications;
     rows->replication = calloc(total, sizeof *rows->replication);
@@ -296,7 +298,9 @@ static cp_status fill_replications(const cp_study *study, cp_plan_rows *rows, cp
         row->seed = cp_plan_seed(study, row->scenario, row->variant, row->number);
         row->id = cp_replication_row_id(study->scenarios[row->scenario].name,
                                         study->variants[row->variant].name, "", row->seed);
-        cp_status status = hash_configuration(study, rows, row, error);
+        cp_status status = CP_OK;
+        if (only == NULL || *only == row->id)
+            status = hash_configuration(study, rows, row, error);
         if (status != CP_OK)
             return status;
         rows->replication_count++;
@@ -306,8 +310,9 @@ static cp_status fill_replications(const cp_study *study, cp_plan_rows *rows, cp
 
 // ---- public --------------------------------------------------------------------------------
 
-cp_status cp_plan_create(const cp_study *study, const cp_vehicle_model_row *models,
-                         size_t model_count, cp_plan_rows *rows, cp_error *error)
+static cp_status create(const cp_study *study, const cp_vehicle_model_row *models,
+                        size_t model_count, const int64_t *only, cp_plan_rows *rows,
+                        cp_error *error)
 {
     *rows = (cp_plan_rows){0};
     cp_status status = fill_study(study, models, &rows->study, error);
@@ -320,10 +325,23 @@ cp_status cp_plan_create(const cp_study *study, const cp_vehicle_model_row *mode
     if (status == CP_OK)
         status = fill_vehicle_models(study, models, model_count, rows, error);
     if (status == CP_OK)
-        status = fill_replications(study, rows, error);
+        status = fill_replications(study, only, rows, error);
     if (status != CP_OK)
         cp_plan_destroy(rows);
     return status;
+}
+
+cp_status cp_plan_create(const cp_study *study, const cp_vehicle_model_row *models,
+                         size_t model_count, cp_plan_rows *rows, cp_error *error)
+{
+    return create(study, models, model_count, NULL, rows, error);
+}
+
+cp_status cp_plan_create_for(const cp_study *study, const cp_vehicle_model_row *models,
+                             size_t model_count, int64_t replication_id, cp_plan_rows *rows,
+                             cp_error *error)
+{
+    return create(study, models, model_count, &replication_id, rows, error);
 }
 
 void cp_plan_destroy(cp_plan_rows *rows)

@@ -14,6 +14,12 @@
  * file that cannot be read; CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_plan_create(const cp_study *study, const cp_vehicle_model_row *models,
                                        size_t model_count, cp_plan_rows *rows, cp_error *error);
+/* The same for who needs one replication only: the others have no configuration hash, which is most
+ * of the work. */
+CP_MUST_CHECK cp_status cp_plan_create_for(const cp_study *study,
+                                           const cp_vehicle_model_row *models, size_t model_count,
+                                           int64_t replication_id, cp_plan_rows *rows,
+                                           cp_error *error);
 void cp_plan_destroy(cp_plan_rows *rows);
 
 /* Seed of replication number of a scenario and variant: a pure function of the study's seed and the

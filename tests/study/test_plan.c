@@ -188,6 +188,23 @@ static void a_counterfactual_study_runs_its_baseline_only(void **state)
     free(text);
 }
 
+// What a worker makes of the plan agrees with what the runner planned.
+static void one_replication_is_planned_as_among_all(void **state)
+{
+    cp_study study;
+    cp_plan_rows all, one;
+    cp_error error = {0};
+    load(*state, GOOD_STUDY, &study, &all);
+    int64_t id = all.replication[3].id;
+    assert_ok(cp_plan_create_for(&study, MODELS, 2, id, &one, &error), &error);
+    assert_int_equal(one.replication_count, all.replication_count);
+    assert_string_equal(cp_plan_find(&one, id)->configuration_hash,
+                        all.replication[3].configuration_hash);
+    assert_string_equal(one.replication[0].configuration_hash, "");
+    cp_plan_destroy(&one);
+    unload(&study, &all);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -200,6 +217,8 @@ int main(void)
                                         fixture_end),
         cmocka_unit_test_setup_teardown(files_of_a_scenario_are_listed, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(two_cars_of_one_name_are_refused, fixture_begin,
+                                        fixture_end),
+        cmocka_unit_test_setup_teardown(one_replication_is_planned_as_among_all, fixture_begin,
                                         fixture_end),
         cmocka_unit_test_setup_teardown(a_counterfactual_study_runs_its_baseline_only,
                                         fixture_begin, fixture_end),

@@ -12,8 +12,9 @@
 /* What a counterfactual costs against re-running the replication it belongs to. The same traffic
  * three times: without pairs, with one treatment, with five. The difference of the last two is what
  * four more branches a crash cost; what the second costs more than the first is the checkpoints,
- * the null treatment and one treatment. Processor time of the workers with all their checkpoints
- * and branches, so that other work on the machine does not count. */
+ * the null treatment and one treatment. Last, what a branch costs with its share of the
+ * checkpoints. Processor time of the workers with all their checkpoints and branches, so that other
+ * work on the machine does not count. */
 
 static const char HEAD[] = "study: bench\n"
                            "design: %s\n"
@@ -112,9 +113,11 @@ int main(int argc, char **argv)
         double branch_s = (five.cpu_s - one.cpu_s) / (five.branches - one.branches);
         printf("%s: replication %.2f s of processor time, %.0f crashes\n"
                "  a counterfactual: %.1f %% of re-running the replication (bar: 5 %%)\n"
-               "  checkpoints: %.0f %% of the replication, whatever the number of branches\n",
+               "  checkpoints: %.0f %% of the replication, whatever the number of branches\n"
+               "  both, for each of the %.0f branches of five treatments: %.1f %%\n",
                SCENARIOS[k][0], plain.cpu_s, plain.crashes, 100.0 * branch_s / plain.cpu_s,
-               100.0 * (one.cpu_s - plain.cpu_s - branch_s * one.branches) / plain.cpu_s);
+               100.0 * (one.cpu_s - plain.cpu_s - branch_s * one.branches) / plain.cpu_s,
+               five.branches, 100.0 * (five.cpu_s - plain.cpu_s) / plain.cpu_s / five.branches);
     }
     return 0;
 }

@@ -62,29 +62,31 @@ JOIN variant AS v ON v.id = cv.variant_id;
 DROP VIEW IF EXISTS olc_by_variant;
 CREATE VIEW olc_by_variant AS
 WITH counted AS (
-    SELECT variant_id, count(*) AS n
+    -- of vehicles with an OLC, left-censored ones included
+    SELECT variant_id, count(*) AS n, count(*) - count(olc_g) AS censored, avg(olc_g) AS mean_g
     FROM crash_vehicle
     WHERE olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')
     GROUP BY variant_id
+), by_role AS (
+    SELECT variant_id, role, count(*) AS vehicles, sum(frontal) AS frontal,
+           sum(frontal AND olc_status = 'simulation_failed') AS simulation_failed,
+           sum(frontal AND validity = 'inside') AS inside_validity
+    FROM crash_vehicle
+    GROUP BY variant_id, role
 ), vehicles AS (
     SELECT variant_id,
-           sum(role = 'a') AS crashes,
-           sum(role = 'a' AND frontal = 1) AS frontal_crashes,
-           sum(frontal) AS frontal_vehicles,
-           sum(frontal = 1 AND olc_status IN ('no_deceleration', 'beyond_0_5_s')) AS censored,
-           sum(frontal = 1 AND olc_status = 'simulation_failed') AS simulation_failed,
-           sum(frontal = 1 AND validity = 'inside') AS inside_validity,
-           avg(CASE WHEN frontal = 1 THEN olc_g END) AS olc_mean_g,
-           min(CASE WHEN frontal = 1 THEN olc_g END) AS olc_min_g,
-           max(CASE WHEN frontal = 1 THEN olc_g END) AS olc_max_g
-    FROM crash_vehicle
+           sum(CASE WHEN role = 'a' THEN vehicles END) AS crashes,
+           sum(CASE WHEN role = 'a' THEN frontal END) AS frontal_crashes,
+           sum(frontal) AS frontal_vehicles, sum(simulation_failed) AS simulation_failed,
+           sum(inside_validity) AS inside_validity
+    FROM by_role
     GROUP BY variant_id
 )
 SELECT v.name AS variant, v.id AS variant_id, v.is_baseline AS is_baseline,
        coalesce(x.crashes, 0) AS crashes,
        coalesce(x.frontal_crashes, 0) AS frontal_crashes,
        coalesce(x.frontal_vehicles, 0) AS frontal_vehicles,
-       coalesce(x.censored, 0) AS censored,
+       coalesce(k.censored, 0) AS censored,
        coalesce(x.simulation_failed, 0) AS simulation_failed,
        -- the middle one or the mean of the two in the middle; no value if either is censored. The
        -- inner LIMIT lets the walk along the index end there.
@@ -96,8 +98,13 @@ SELECT v.name AS variant, v.id AS variant_id, v.is_baseline AS is_baseline,
                       AND o.olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s'))
               WHERE place >= (k.n + 1) / 2 LIMIT 2)
         WHERE place <= k.n / 2 + 1) AS olc_median_g,
-       x.olc_mean_g AS olc_mean_g, -- of the vehicles with a value only
-       x.olc_min_g AS olc_min_g, x.olc_max_g AS olc_max_g,
+       k.mean_g AS olc_mean_g, -- of the vehicles with a value only
+       (SELECT min(o.olc_g) FROM crash_vehicle AS o
+        WHERE o.variant_id = v.id
+          AND o.olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')) AS olc_min_g,
+       (SELECT max(o.olc_g) FROM crash_vehicle AS o
+        WHERE o.variant_id = v.id
+          AND o.olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')) AS olc_max_g,
        coalesce(x.inside_validity, 0) AS inside_validity,
        1.0 * x.inside_validity / nullif(x.frontal_vehicles, 0) AS share_inside_validity
 FROM variant AS v
@@ -108,13 +115,9 @@ ORDER BY v.number;
 -- The same for each scenario and variant.
 DROP VIEW IF EXISTS olc_by_scenario;
 CREATE VIEW olc_by_scenario AS
-WITH counted AS (
-    SELECT variant_id, scenario_id, count(*) AS n
-    FROM crash_vehicle
-    WHERE olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')
-    GROUP BY variant_id, scenario_id
-), vehicles AS (
+WITH vehicles AS (
     SELECT variant_id, scenario_id,
+           sum(olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')) AS n,
            sum(role = 'a') AS crashes,
            sum(role = 'a' AND frontal = 1) AS frontal_crashes,
            sum(frontal) AS frontal_vehicles,
@@ -134,13 +137,12 @@ SELECT s.name AS scenario, v.name AS variant, s.id AS scenario_id, v.id AS varia
                     FROM crash_vehicle AS o
                     WHERE o.variant_id = v.id AND o.scenario_id = s.id
                       AND o.olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s'))
-              WHERE place >= (k.n + 1) / 2 LIMIT 2)
-        WHERE place <= k.n / 2 + 1) AS olc_median_g,
+              WHERE place >= (x.n + 1) / 2 LIMIT 2)
+        WHERE place <= x.n / 2 + 1) AS olc_median_g,
        coalesce(x.inside_validity, 0) AS inside_validity,
        1.0 * x.inside_validity / nullif(x.frontal_vehicles, 0) AS share_inside_validity
 FROM scenario AS s CROSS JOIN variant AS v
 LEFT JOIN vehicles AS x ON x.variant_id = v.id AND x.scenario_id = s.id
-LEFT JOIN counted AS k ON k.variant_id = v.id AND k.scenario_id = s.id
 ORDER BY s.number, v.number;
 
 -- Counts of every finished replication, those without a crash included: what rates and bootstrap

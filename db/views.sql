@@ -353,8 +353,16 @@ SELECT v.id AS variant_id, v.name AS variant,
                WHERE w.owner = 'variant' AND w.owner_id = v.id
                  AND w.parameter = 'variants.' || w.base || '.' || (f.value ->> 'function') || '.'
                                    || p.key) AS swept
-FROM variant AS v, json_each(v.functions) AS f, json_each(f.value, '$.parameters') AS p
-ORDER BY v.number, f.key, p.id;
+FROM variant AS v, json_each(v.functions) AS f, (
+    SELECT w.id AS variant_id, g.key AS function, q.key AS key, q.value AS value, q.id AS place
+    FROM variant AS w, json_each(w.functions) AS g, json_each(g.value, '$.parameters') AS q
+    UNION ALL
+    -- penetration by vehicle type: equipment.TYPE
+    SELECT w.id, g.key, 'equipment.' || q.key, q.value, q.id + 1000000
+    FROM variant AS w, json_each(w.functions) AS g, json_each(g.value, '$.equipment') AS q
+) AS p
+WHERE p.variant_id = v.id AND p.function = f.key
+ORDER BY v.number, f.key, p.place;
 
 -- The same of the driver errors of every scenario, and its swept options of SUMO (driver_error
 -- 'sumo_options').

@@ -11,6 +11,7 @@
 #define KEY_PATH_SIZE 512
 #define VALUE_TEXT_SIZE 32
 #define LIST_SIZE 1024
+#define NAME_CHARACTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-."
 
 // ---- the section as libcyaml reads it ------------------------------------------------------
 
@@ -44,8 +45,9 @@ typedef struct axis {
     const cp_control_settings *list; /* controls of the owner */
     size_t list_count;
     size_t control;                   /* which of them, */
-    const cp_control_parameter *what; /* and which parameter; NULL: */
-    char option[64];                  /* an option of SUMO, without the dashes */
+    const cp_control_parameter *what; /* and which parameter of it; NULL: */
+    size_t share;                     /* 1 + which entry of its equipment; 0: */
+    char name[96];                    /* an option of SUMO, without the dashes; "equipment.TYPE" */
     double *values;
     size_t count;
 } axis;
@@ -58,12 +60,12 @@ static const char *owner_name(const axis *a, const cp_study *study)
 // Name of the parameter alone, and of whose it is.
 static const char *short_name(const axis *a)
 {
-    return a->what != NULL ? a->what->name : a->option;
+    return a->what != NULL ? a->what->name : a->name;
 }
 
 static const char *group_name(const axis *a)
 {
-    return a->what != NULL ? a->list[a->control].type->name : "sumo_options";
+    return a->what != NULL || a->share > 0 ? a->list[a->control].type->name : "sumo_options";
 }
 
 static void append(char list[LIST_SIZE], const char *name)
@@ -103,27 +105,57 @@ static cp_status fail_owner(const axis *a, const cp_study *study, cp_error *erro
                         a->of_scenario ? "scenario" : "variant", names);
 }
 
+// Whether control number c has the parameter; how many have is counted, their names are collected.
+static void look_into_parameters(axis *a, size_t c, const char *name, char had[LIST_SIZE],
+                                 size_t *found)
+{
+    const cp_control_type *type = a->list[c].type;
+    for (size_t p = 0; p < type->parameter_count; p++) {
+        char full[128];
+        snprintf(full, sizeof full, "%s.%s", type->name, type->parameters[p].name);
+        append(had, full);
+        if (strcmp(type->parameters[p].name, name) != 0)
+            continue;
+        a->control = c;
+        a->what = &type->parameters[p];
+        ++*found;
+    }
+}
+
+// The same for its penetration among vehicles of a type, "equipment.TYPE".
+static void look_into_equipment(axis *a, size_t c, const char *name, char had[LIST_SIZE],
+                                size_t *found)
+{
+    for (size_t k = 0; k < a->list[c].share_count; k++) {
+        char share[96], full[160];
+        int length = snprintf(share, sizeof share, "equipment.%s", a->list[c].shares[k].type);
+        snprintf(full, sizeof full, "%s.%s", a->list[c].type->name, share);
+        append(had, full);
+        if (strcmp(share, name) != 0 || length >= (int)sizeof share)
+            continue;
+        a->control = c;
+        a->share = k + 1;
+        snprintf(a->name, sizeof a->name, "%s", share);
+        ++*found;
+    }
+}
+
 // A parameter of one of the owner's controls; text is "CONTROL.PARAMETER" or "PARAMETER".
 static cp_status find_parameter(axis *a, const char *text, cp_error *error)
 {
     char had[LIST_SIZE] = "";
     size_t found = 0;
     for (size_t c = 0; c < a->list_count; c++) {
-        const cp_control_type *type = a->list[c].type;
-        size_t length = strlen(type->name);
-        bool named = strncmp(text, type->name, length) == 0 && text[length] == '.';
-        const char *name = named ? text + length + 1 : text;
-        for (size_t p = 0; p < type->parameter_count; p++) {
-            char full[128];
-            snprintf(full, sizeof full, "%s.%s", type->name, type->parameters[p].name);
-            append(had, full);
-            if (strcmp(type->parameters[p].name, name) != 0)
-                continue;
-            a->control = c;
-            a->what = &type->parameters[p];
-            found++;
-        }
+        const char *control = a->list[c].type->name;
+        size_t length = strlen(control);
+        bool named = strncmp(text, control, length) == 0 && text[length] == '.';
+        look_into_parameters(a, c, named ? text + length + 1 : text, had, &found);
+        look_into_equipment(a, c, named ? text + length + 1 : text, had, &found);
     }
+    if (found == 1 && strspn(short_name(a), NAME_CHARACTERS) != strlen(short_name(a)))
+        return cp_yaml_fail(a->file, error, a->key,
+                            "names a vehicle type with other characters than letters, digits, '_', "
+                            "'-' and '.': it cannot be part of a name");
     if (found == 1)
         return CP_OK;
     if (found > 1)
@@ -138,10 +170,10 @@ static cp_status find_option(axis *a, const char *text, cp_error *error)
 {
     text += strspn(text, "-");
     size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789.-");
-    if (length == 0 || text[length] != '\0' || length >= sizeof a->option)
+    if (length == 0 || text[length] != '\0' || length >= sizeof a->name)
         return cp_yaml_fail(a->file, error, a->key,
                             "must end in the long name of an option of SUMO, found '%s'", text);
-    snprintf(a->option, sizeof a->option, "%s", text);
+    snprintf(a->name, sizeof a->name, "%s", text);
     return CP_OK;
 }
 
@@ -186,8 +218,8 @@ static double rounded(double value)
 static cp_status read_value(const axis *a, const char *key, const char *text, double *value,
                             cp_error *error)
 {
-    double smallest = a->what != NULL ? a->what->smallest : -1e12;
-    double largest = a->what != NULL ? a->what->largest : 1e12;
+    double smallest = a->what != NULL ? a->what->smallest : a->share > 0 ? 0 : -1e12;
+    double largest = a->what != NULL ? a->what->largest : a->share > 0 ? 1 : 1e12;
     char path[KEY_PATH_SIZE];
     snprintf(path, sizeof path, "sweep[%zu].%s", a->entry, key);
     cp_status status = cp_yaml_number(a->file, path, text, smallest, largest, value, error);
@@ -376,8 +408,8 @@ static cp_status note_value(const axis *a, double value, point *p, cp_error *err
 static cp_status set_option(const axis *a, double value, cp_study_scenario *scenario,
                             cp_error *error)
 {
-    char option[80], text[VALUE_TEXT_SIZE];
-    snprintf(option, sizeof option, "--%s", a->option);
+    char option[128], text[VALUE_TEXT_SIZE];
+    snprintf(option, sizeof option, "--%s", a->name);
     snprintf(text, sizeof text, "%.12g", value);
     size_t length = strlen(option), kept = 0;
     char **words = scenario->sumo_options;
@@ -418,9 +450,12 @@ static cp_status apply(const sweep *s, bool of_scenario, size_t owner, size_t at
             status = note_value(a, value, p, error);
         if (status != CP_OK)
             break;
+        cp_control_settings *control =
+            a->what != NULL || a->share > 0 ? &p->controls[a->control] : NULL;
         if (a->what != NULL)
-            p->controls[a->control].parameter[a->what - a->list[a->control].type->parameters] =
-                value;
+            control->parameter[a->what - control->type->parameters] = value;
+        else if (a->share > 0)
+            control->shares[a->share - 1].penetration_1 = value;
         else
             status = set_option(a, value, scenario, error);
     }

@@ -11,6 +11,7 @@
  *     - {parameter: variants.aeb.aeb.ttc_s, values: [0.8, 1.2, 1.6]}
  *     - {parameter: scenarios.left_turn.failed_to_see.probability_1, from: 0.1, to: 0.5, steps: 5}
  *     - {parameter: scenarios.left_turn.sumo_options.scale, values: [0.5, 1]}
+ *     - {parameter: variants.aeb.aeb.equipment.van, values: [0, 0.5]}   # penetration by type
  *
  * The name of the function or driver error may be left out where only one has the parameter. A
  * scenario or variant with swept parameters stands in the study once for each combination of

@@ -162,11 +162,17 @@ static void sweeps_are_rows(void **state)
     cp_store *store = open_planned(*state, &plan);
     plan.rows.sweep = sweep;
     plan.rows.sweep_count = 2;
+    plan.variant[1].functions = "[{\"function\":\"aeb\",\"parameters\":{\"delay_s\":0.1,"
+                                "\"ttc_s\":1.5},\"equipment\":{\"van\":0.5}}]";
     assert_ok(cp_plan_rows_write(store, &plan.rows, &error), &error);
     assert_true(number_of(store, "SELECT w.value FROM sweep_value AS w JOIN variant AS v ON v.id = "
                                  "w.owner_id WHERE v.name = 'aeb' AND w.owner = 'variant'") == 1.5);
     assert_true(number_of(store, "SELECT w.value FROM sweep_value AS w JOIN scenario AS s ON s.id "
                                  "= w.owner_id WHERE w.owner = 'scenario'") == 0.25);
+    assert_true(number_of(store, "SELECT sum(swept * value) FROM variant_parameter") == 1.5);
+    assert_true(number_of(store, "SELECT count(*) FROM variant_parameter WHERE base = 'aeb'") == 3);
+    assert_true(number_of(store, "SELECT value FROM variant_parameter WHERE parameter = "
+                                 "'equipment.van' AND NOT swept AND variant = 'aeb'") == 0.5);
     plan.rows.sweep_count = 0;
     assert_ok(cp_plan_rows_write(store, &plan.rows, &error), &error);
     assert_true(number_of(store, "SELECT count(*) FROM sweep_value") == 0);

@@ -98,6 +98,41 @@ static void options_of_sumo_can_be_swept(void **state)
     cp_study_destroy(&study);
 }
 
+static void penetration_by_type_can_be_swept(void **state)
+{
+    const fixture *f = *state;
+    cp_study study;
+    cp_error error = {0};
+    char *text = study_with("deceleration_m_s2: 7\n",
+                            "deceleration_m_s2: 7\n        equipment: [{type: van, penetration_1: "
+                            "1}, {type: 'big bus', penetration_1: 0}]\n");
+    char sweep[4096];
+    snprintf(sweep, sizeof sweep,
+             "%ssweep: [{parameter: variants.aeb.aeb.equipment.van, values: [0, "
+             "0.5]}]\n",
+             text);
+    write_text(f, "study.yaml", sweep);
+    assert_ok(cp_study_load(f->study, &study, &error), &error);
+    assert_int_equal(study.variant_count, 3);
+    assert_string_equal(study.variants[2].name, "aeb@equipment.van=0.5");
+    assert_string_equal(study.variants[2].swept[0].parameter, "variants.aeb.aeb.equipment.van");
+    assert_true(study.variants[2].functions[0].shares[0].penetration_1 == 0.5);
+    assert_true(study.variants[1].functions[0].shares[0].penetration_1 == 0);
+    cp_study_destroy(&study);
+
+    snprintf(sweep, sizeof sweep,
+             "%ssweep: [{parameter: variants.aeb.equipment.van, values: [2]}]\n", text);
+    write_text(f, "study.yaml", sweep);
+    assert_int_equal(cp_study_load(f->study, &study, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "sweep[0].values[0] must be between 0 and 1, found 2"));
+    snprintf(sweep, sizeof sweep,
+             "%ssweep: [{parameter: variants.aeb.equipment.big bus, values: [1]}]\n", text);
+    write_text(f, "study.yaml", sweep);
+    assert_int_equal(cp_study_load(f->study, &study, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "names a vehicle type with other characters"));
+    free(text);
+}
+
 // Paired: what differs between two values of a sweep is the parameter alone.
 static void values_share_seeds_unless_independent(void **state)
 {
@@ -195,6 +230,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(ranges_hit_the_numbers_people_mean, fixture_begin,
                                         fixture_end),
         cmocka_unit_test_setup_teardown(options_of_sumo_can_be_swept, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(penetration_by_type_can_be_swept, fixture_begin,
+                                        fixture_end),
         cmocka_unit_test_setup_teardown(values_share_seeds_unless_independent, fixture_begin,
                                         fixture_end),
         cmocka_unit_test_setup_teardown(mistakes_are_named, fixture_begin, fixture_end),

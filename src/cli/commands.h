@@ -9,6 +9,7 @@
 CP_MUST_CHECK cp_status cmd_run(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_plan(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_background(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_assess(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_compare(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_report(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_plot(int argc, char **argv, cp_error *error);

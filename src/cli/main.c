@@ -16,6 +16,7 @@ static const command COMMAND[] = {
     {"run", cmd_run, "simulate a study: traffic, crashes, pulses, into a database"},
     {"plan", cmd_plan, "show what a study would run"},
     {"background", cmd_background, "what contacts a network makes without driver errors"},
+    {"assess", cmd_assess, "put ready collisions through the surrogate"},
     {"status", cmd_status, "how far a study has come"},
     {"merge", cmd_merge, "put databases of one study together"},
     {"submit", cmd_submit, "run a study on a cluster"},

@@ -24,14 +24,8 @@ static const cp_severity NO_SEVERITY = {
     .pdof_rad = NAN,
     .yaw_change_rad_s = NAN};
 
-/* What one vehicle crashes as. */
-typedef struct stand_in {
-    cp_fleet_choice choice;
-    cp_vehicle_model model; /* covers SUMO's rectangle; without a choice only its outline counts */
-} stand_in;
-
 static cp_status choose(const cp_impact *impact, const cp_impact_names *names,
-                        const cp_fleet *fleet, int role, stand_in *car, cp_error *error)
+                        const cp_fleet *fleet, int role, cp_stand_in *car, cp_error *error)
 {
     const cp_vehicle_state *state = &impact->state[role];
     cp_status status = cp_fleet_choose(fleet, names->sumocfg_path, names->sumo_type[role],
@@ -51,7 +45,7 @@ static cp_status choose(const cp_impact *impact, const cp_impact_names *names,
 }
 
 // What is outside of the calibrated range; of a vehicle without a model nothing else is known.
-static unsigned outside_of(const stand_in cars[2], const cp_crash_configuration *configuration,
+static unsigned outside_of(const cp_stand_in cars[2], const cp_crash_configuration *configuration,
                            const cp_crash_description *description, int role)
 {
     unsigned outside =
@@ -63,9 +57,10 @@ static unsigned outside_of(const stand_in cars[2], const cp_crash_configuration 
     return outside;
 }
 
-static cp_status fill_vehicle(const cp_impact *impact, const cp_impact_names *names,
-                              const stand_in cars[2], const cp_crash_configuration *configuration,
-                              int role, cp_crash_row *row, cp_error *error)
+static cp_status fill_vehicle(const cp_crash_facts *facts, const cp_impact_names *names,
+                              const cp_stand_in cars[2],
+                              const cp_crash_configuration *configuration, int role,
+                              cp_crash_row *row, cp_error *error)
 {
     cp_crash_vehicle_row *vehicle = &row->vehicle[role];
     const cp_fleet_choice *choice = &cars[role].choice;
@@ -80,10 +75,10 @@ static cp_status fill_vehicle(const cp_impact *impact, const cp_impact_names *na
     vehicle->at_fault = names->at_fault[role];
     vehicle->body = configuration->vehicle[role];
     vehicle->speed_m_s = row->description.speed_m_s[role];
-    vehicle->length_m = impact->state[role].length_m;
-    vehicle->width_m = impact->state[role].width_m;
+    vehicle->length_m = facts->length_m[role];
+    vehicle->width_m = facts->width_m[role];
     vehicle->velocity_angle_rad = row->description.velocity_angle_rad[role];
-    vehicle->side = impact->side[role];
+    vehicle->side = configuration->side[role];
     vehicle->outside = outside_of(cars, configuration, &row->description, role);
     if (names->had_crashed[0] || names->had_crashed[1])
         vehicle->outside |= CP_OUTSIDE_DAMAGED;
@@ -105,7 +100,7 @@ static cp_status keep_pulse(const cp_pulse *raw, cp_crash_vehicle_row *vehicle, 
 }
 
 // Run the surrogate and take over what it says of both cars.
-static cp_status simulate(const stand_in cars[2], const cp_crash_configuration *configuration,
+static cp_status simulate(const cp_stand_in cars[2], const cp_crash_configuration *configuration,
                           cp_crash_row *row, cp_error *error)
 {
     cp_crash_options options = cp_crash_options_default();
@@ -141,8 +136,8 @@ static void drop_sign_of_zero(cp_body_state *body)
 }
 
 // A crash that cannot be simulated has happened all the same: it stays, without a severity.
-static cp_status simulate_if_possible(const cp_impact *impact, const cp_impact_names *names,
-                                      const stand_in cars[2],
+static cp_status simulate_if_possible(const cp_crash_facts *facts, const cp_impact_names *names,
+                                      const cp_stand_in cars[2],
                                       const cp_crash_configuration *configuration,
                                       cp_crash_row *row, cp_error *error)
 {
@@ -155,7 +150,7 @@ static cp_status simulate_if_possible(const cp_impact *impact, const cp_impact_n
     if (status == CP_OK)
         return CP_OK;
     cp_log_warning("crash of %s and %s at %.2f s cannot be simulated: %s", names->sumo_id[0],
-                   names->sumo_id[1], impact->time_s, failure.text);
+                   names->sumo_id[1], facts->time_s, failure.text);
     for (int role = 0; role < 2; role++) {
         free(row->vehicle[role].pulse);
         row->vehicle[role].pulse = NULL;
@@ -163,36 +158,51 @@ static cp_status simulate_if_possible(const cp_impact *impact, const cp_impact_n
     return CP_OK;
 }
 
-cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *names,
-                               const cp_fleet *fleet, cp_crash_row *row, cp_error *error)
+cp_status cp_crash_record_facts(const cp_crash_facts *facts, const cp_impact_names *names,
+                                const cp_stand_in cars[2], cp_crash_row *row, cp_error *error)
 {
-    stand_in cars[2] = {0};
+    cp_crash_configuration configuration = facts->configuration;
     cp_status status = CP_OK;
-    for (int role = 0; status == CP_OK && role < 2; role++)
-        status = choose(impact, names, fleet, role, &cars[role], error);
-    if (status != CP_OK)
-        return status;
-    cp_crash_configuration configuration =
-        cp_impact_configuration(impact, &cars[0].model, &cars[1].model);
     for (int role = 0; role < 2; role++)
         drop_sign_of_zero(&configuration.vehicle[role]);
-    row->time_s = impact->time_s;
+    row->time_s = facts->time_s;
     row->is_secondary = names->had_crashed[0] || names->had_crashed[1];
     row->follows = CP_FOLLOWS_NONE;
-    row->contact_m = impact->contact_m;
-    row->description = cp_impact_describe(impact, &cars[0].model, &cars[1].model);
+    row->contact_m = facts->contact_m;
+    row->description = facts->description;
     row->t_common_s = row->separation_s = row->shift_m = NAN;
     for (int role = 0; status == CP_OK && role < 2; role++)
-        status = fill_vehicle(impact, names, cars, &configuration, role, row, error);
+        status = fill_vehicle(facts, names, cars, &configuration, role, row, error);
     if (status == CP_OK)
-        status = simulate_if_possible(impact, names, cars, &configuration, row, error);
+        status = simulate_if_possible(facts, names, cars, &configuration, row, error);
     if (status != CP_OK)
         return status;
 
     // OLC speaks of frontal contact only.
     for (int role = 0; role < 2; role++)
-        if (impact->side[role] != CP_SIDE_FRONT)
+        if (configuration.side[role] != CP_SIDE_FRONT)
             row->vehicle[role].severity.olc = (cp_olc){
                 .status = CP_OLC_NOT_FRONT_CONTACT, .olc_g = NAN, .t1_s = NAN, .t2_s = NAN};
     return CP_OK;
+}
+
+cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *names,
+                               const cp_fleet *fleet, cp_crash_row *row, cp_error *error)
+{
+    cp_stand_in cars[2] = {0};
+    cp_status status = CP_OK;
+    for (int role = 0; status == CP_OK && role < 2; role++)
+        status = choose(impact, names, fleet, role, &cars[role], error);
+    if (status != CP_OK)
+        return status;
+    cp_crash_facts facts = {
+        .time_s = impact->time_s,
+        .contact_m = impact->contact_m,
+        .configuration = cp_impact_configuration(impact, &cars[0].model, &cars[1].model),
+        .description = cp_impact_describe(impact, &cars[0].model, &cars[1].model)};
+    for (int role = 0; role < 2; role++) {
+        facts.length_m[role] = impact->state[role].length_m;
+        facts.width_m[role] = impact->state[role].width_m;
+    }
+    return cp_crash_record_facts(&facts, names, cars, row, error);
 }

@@ -19,6 +19,29 @@ typedef struct cp_impact_names {
     bool had_crashed[2]; /* it had crashed before: the surrogate's undamaged car is not it */
 } cp_impact_names;
 
+/* What one vehicle crashes as. */
+typedef struct cp_stand_in {
+    cp_fleet_choice choice;
+    cp_vehicle_model model; /* covers the rectangle; without a choice only its outline counts */
+} cp_stand_in;
+
+/* What there is to know of a crash before it is simulated. */
+typedef struct cp_crash_facts {
+    double time_s;
+    cp_vec2 contact_m; /* first contact point, in the frame of the configuration */
+    cp_crash_configuration configuration;
+    cp_crash_description description;
+    double length_m[2]; /* of the rectangles that met */
+    double width_m[2];
+} cp_crash_facts;
+
+/* Fill row, zeroed before, and simulate; as cp_crash_record_fill, of whose names it takes no types.
+ */
+CP_MUST_CHECK cp_status cp_crash_record_facts(const cp_crash_facts *facts,
+                                              const cp_impact_names *names,
+                                              const cp_stand_in cars[2], cp_crash_row *row,
+                                              cp_error *error);
+
 /* Fill row, zeroed before; what it owns is freed by cp_result_rows_destroy. A crash the surrogate
  * cannot simulate, or with a vehicle that has no model, is kept, with OLC status simulation_failed,
  * and logged. Models cover SUMO's rectangles (cp_vehicle_model_cover). Errors: CP_NO_MEMORY;

@@ -1,0 +1,386 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/assessment.h"
+
+#include "core/log.h"
+#include "impact/recorded_contact.h"
+#include "run/crash_record.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Where nobody says how far along its lane a vehicle is: its rear has left the junction behind it.
+#define FAR_ALONG_M 1e6
+
+// ---- collisions of a SUMO run --------------------------------------------------------------
+
+/* One collision of the list while it is looked at. */
+typedef struct collision_view {
+    const cp_listed_collision *listed;
+    const char *list_path;
+    const cp_fleet *fleet;
+    double step_length_s;
+    cp_sumo_type type[2];
+    cp_vehicle_state *state[2];
+    double *time_s[2];
+    cp_recorded_track track[2];
+} collision_view;
+
+// SUMO's own car.
+static cp_sumo_type standard_car(void)
+{
+    return (cp_sumo_type){.vehicle_class = "passenger",
+                          .length_m = CP_SUMO_CAR_LENGTH_M,
+                          .width_m = CP_SUMO_CAR_WIDTH_M,
+                          .height_m = CP_SUMO_CAR_HEIGHT_M,
+                          .mass_kg = NAN};
+}
+
+// What a vehicle is, as the bridge would tell it, and so how large its rectangle. Models that types
+// name are the fleet's already.
+static cp_status describe_type(const collision_view *view, const cp_vtypes *types, int role,
+                               cp_sumo_type *type, cp_error *error)
+{
+    const char *id = view->listed->type[role];
+    const cp_vtype *known = cp_vtypes_find(types, id);
+    cp_fleet_choice choice;
+    *type = standard_car();
+    if (known != NULL) {
+        snprintf(type->vehicle_class, sizeof type->vehicle_class, "%s", known->vehicle_class);
+        type->length_m = known->length_m;
+        type->width_m = known->width_m;
+        type->height_m = known->height_m;
+        type->mass_kg = known->mass_kg;
+        return CP_OK;
+    }
+    cp_status status = cp_fleet_choose(view->fleet, "", id, type, &choice, error);
+    if (status == CP_OK && strcmp(choice.chosen_by, "study") == 0) {
+        type->length_m = choice.model->length_m;
+        type->width_m = choice.model->width_m;
+    }
+    return status;
+}
+
+static cp_status make_track(collision_view *view, const cp_fcd_track *track, const cp_vtypes *types,
+                            int role, cp_error *error)
+{
+    cp_status status = describe_type(view, types, role, &view->type[role], error);
+    if (status != CP_OK)
+        return status;
+    view->state[role] = calloc(track->count + 1, sizeof **view->state);
+    view->time_s[role] = calloc(track->count + 1, sizeof **view->time_s);
+    if (view->state[role] == NULL || view->time_s[role] == NULL)
+        return cp_fail_memory(error, "ways of vehicles");
+    for (size_t k = 0; k < track->count; k++) {
+        const cp_fcd_sample *sample = &track->sample[k];
+        view->time_s[role][k] = sample->time_s;
+        view->state[role][k] = (cp_vehicle_state){.vehicle = (uint32_t)role,
+                                                  .front_x_m = sample->front_m.x,
+                                                  .front_y_m = sample->front_m.y,
+                                                  .yaw_rad = sample->yaw_rad,
+                                                  .speed_m_s = sample->speed_m_s,
+                                                  .lane_position_m = isnan(sample->lane_position_m)
+                                                                         ? FAR_ALONG_M
+                                                                         : sample->lane_position_m,
+                                                  .length_m = view->type[role].length_m,
+                                                  .width_m = view->type[role].width_m};
+    }
+    view->track[role] = (cp_recorded_track){view->state[role], view->time_s[role], track->count};
+    return CP_OK;
+}
+
+static cp_status add_crash(const collision_view *view, const cp_impact *impact,
+                           cp_result_rows *results, cp_error *error)
+{
+    cp_impact_names names = {.sumocfg_path = view->list_path};
+    for (int role = 0; role < 2; role++) {
+        names.sumo_id[role] = view->listed->id[impact->vehicle[role]];
+        names.sumo_type[role] = view->listed->type[impact->vehicle[role]];
+        names.type[role] = view->type[impact->vehicle[role]];
+    }
+    cp_crash_row *row = cp_result_rows_add_crash(results);
+    return row != NULL ? cp_crash_record_fill(impact, &names, view->fleet, row, error)
+                       : cp_fail_memory(error, "crash");
+}
+
+static cp_status add_contact(const collision_view *view, const cp_impact *impact,
+                             cp_result_rows *results, cp_error *error)
+{
+    cp_contact_row *row = cp_result_rows_add_contact(results);
+    if (row == NULL)
+        return cp_fail_memory(error, "contact");
+    row->time_s = impact->time_s;
+    row->contact_m = impact->contact_m;
+    row->verdict = cp_contact_verdict_text(impact->verdict);
+    for (int role = 0; role < 2; role++) {
+        row->vehicle[role] = strdup(view->listed->id[impact->vehicle[role]]);
+        if (row->vehicle[role] == NULL)
+            return cp_fail_memory(error, "contact");
+    }
+    return CP_OK;
+}
+
+static cp_status add_report(const collision_view *view, const char *found_as, double gap_m,
+                            cp_result_rows *results, cp_error *error)
+{
+    cp_sumo_collision_row *row = cp_result_rows_add_sumo_collision(results);
+    if (row == NULL)
+        return cp_fail_memory(error, "collision of SUMO");
+    row->time_s = view->listed->time_s + view->step_length_s;
+    row->collider = strdup(view->listed->id[0]);
+    row->victim = strdup(view->listed->id[1]);
+    row->type = strdup(view->listed->kind);
+    row->found_as = found_as;
+    row->gap_m = isfinite(gap_m) ? gap_m : NAN;
+    return row->collider != NULL && row->victim != NULL && row->type != NULL
+               ? CP_OK
+               : cp_fail_memory(error, "collision of SUMO");
+}
+
+static cp_status assess_one(collision_view *view, cp_result_rows *results,
+                            cp_assessment_count *count, cp_error *error)
+{
+    const cp_listed_collision *listed = view->listed;
+    const char *const ids[2] = {listed->id[0], listed->id[1]};
+    cp_recorded_contact contact;
+    cp_status status =
+        cp_recorded_contact_find(view->track, ids, view->step_length_s, &contact, error);
+    if (status != CP_OK)
+        return status;
+    // SUMO's files name a step by its beginning, its clock and we by its end.
+    contact.impact.time_s += view->step_length_s;
+    const char *found_as = "no_contact";
+    if (!contact.is_found) {
+        count->no_contact++;
+        cp_log_warning("%s:%zu: '%s' and '%s' do not touch, nearest %g m", view->list_path,
+                       listed->line, ids[0], ids[1], contact.gap_m);
+    } else if (contact.impact.verdict != CP_CONTACT_CONFIRMED) {
+        count->filtered++;
+        found_as = cp_contact_verdict_text(contact.impact.verdict);
+        cp_log_info("%s:%zu: '%s' and '%s' are not counted: %s", view->list_path, listed->line,
+                    ids[0], ids[1], found_as);
+        status = add_contact(view, &contact.impact, results, error);
+    } else {
+        count->crashes++;
+        count->carried += contact.is_carried;
+        found_as = "crash";
+        status = add_crash(view, &contact.impact, results, error);
+    }
+    return status == CP_OK ? add_report(view, found_as, contact.gap_m, results, error) : status;
+}
+
+static int compare_crashes(const void *one, const void *other)
+{
+    const cp_crash_row *a = one, *b = other;
+    if (a->time_s != b->time_s)
+        return a->time_s < b->time_s ? -1 : 1;
+    int order = strcmp(a->vehicle[0].sumo_id, b->vehicle[0].sumo_id);
+    return order != 0 ? order : strcmp(a->vehicle[1].sumo_id, b->vehicle[1].sumo_id);
+}
+
+static cp_status check_seen(const cp_collision_list *list, const char *list_path,
+                            const cp_fcd_record *record, cp_error *error)
+{
+    for (size_t k = 0; k < list->count; k++)
+        if (record->track[k][0].count > 0 && record->track[k][1].count > 0)
+            return CP_OK;
+    if (list->count == 0)
+        return CP_OK;
+    return cp_fail(
+        error, CP_BAD_INPUT,
+        "%s:%zu: '%s' and '%s' must be on the road around %g s in the record of the same "
+        "run, found neither these nor any other pair of the list",
+        list_path, list->collision[0].line, list->collision[0].id[0], list->collision[0].id[1],
+        list->collision[0].time_s);
+}
+
+cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_path,
+                               const cp_fcd_record *record, const cp_vtypes *types,
+                               const cp_fleet *fleet, cp_result_rows *results,
+                               cp_assessment_count *count, cp_error *error)
+{
+    *count = (cp_assessment_count){.listed = list->count};
+    cp_status status = check_seen(list, list_path, record, error);
+    for (size_t k = 0; status == CP_OK && k < list->count; k++) {
+        collision_view view = {.listed = &list->collision[k],
+                               .list_path = list_path,
+                               .fleet = fleet,
+                               .step_length_s = record->step_length_s};
+        for (int role = 0; status == CP_OK && role < 2; role++)
+            status = make_track(&view, &record->track[k][role], types, role, error);
+        if (status == CP_OK)
+            status = assess_one(&view, results, count, error);
+        for (int role = 0; role < 2; role++) {
+            free(view.state[role]);
+            free(view.time_s[role]);
+        }
+    }
+    if (status == CP_OK && results->crash_count > 1)
+        qsort(results->crash, results->crash_count, sizeof *results->crash, compare_crashes);
+    results->simulated_s = record->simulated_s;
+    results->vehicle_km = record->vehicle_km;
+    results->vehicle_h = record->vehicle_h;
+    results->departed = record->departed;
+    return status;
+}
+
+// ---- lists of configurations ---------------------------------------------------------------
+
+// Two cars on their ways from where they are given: a record of one step, carried on to contact.
+static cp_status contact_of_poses(const cp_listed_configuration *row,
+                                  const cp_vehicle_model *const models[2],
+                                  cp_recorded_contact *contact, cp_error *error)
+{
+    const double step_s = 0.01;
+    const char *const ids[2] = {"a", "b"};
+    cp_vehicle_state state[2][2];
+    double time_s[2] = {-step_s, 0.0};
+    cp_recorded_track track[2];
+    for (int v = 0; v < 2; v++) {
+        // The centre of gravity on its arc, back by a step; the front before it.
+        for (int k = 0; k < 2; k++) {
+            double turned_rad = row->yaw_rate_rad_s[v] * time_s[k];
+            double yaw_rad = cp_wrap_angle(row->pose[v].yaw_rad + turned_rad);
+            double way_m = row->speed_m_s[v] * time_s[k];
+            cp_vec2 cog_m = cp_vec2_add(
+                row->pose[v].position_m,
+                cp_vec2_scale(cp_vec2_heading(row->pose[v].yaw_rad + 0.5 * turned_rad), way_m));
+            cp_vec2 front_m = cp_vec2_add(
+                cog_m, cp_vec2_scale(cp_vec2_heading(yaw_rad), models[v]->cg_to_front_m));
+            state[v][k] = (cp_vehicle_state){.vehicle = (uint32_t)v,
+                                             .front_x_m = front_m.x,
+                                             .front_y_m = front_m.y,
+                                             .yaw_rad = yaw_rad,
+                                             .speed_m_s = row->speed_m_s[v],
+                                             .lane_position_m = FAR_ALONG_M,
+                                             .length_m = models[v]->length_m,
+                                             .width_m = models[v]->width_m};
+        }
+        track[v] = (cp_recorded_track){state[v], time_s, 2};
+    }
+    return cp_recorded_contact_find(track, ids, step_s, contact, error);
+}
+
+static cp_status facts_of_poses(const cp_listed_configuration *row, const char *list_path,
+                                const cp_vehicle_model *models[2], cp_crash_facts *facts,
+                                bool *swapped, cp_error *error)
+{
+    cp_recorded_contact contact;
+    cp_status status = contact_of_poses(row, models, &contact, error);
+    if (status != CP_OK)
+        return status;
+    if (contact.gap_m < 0.0)
+        return cp_fail(
+            error, CP_BAD_INPUT,
+            "%s:%zu: x_b_m, y_b_m must leave the cars apart, found them %.3g m into each "
+            "other",
+            list_path, row->line, -contact.gap_m);
+    if (!contact.is_found)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "%s:%zu: the two must meet within %g s, found them passing", list_path,
+                       row->line, CP_RECORDED_CARRY_ON_S);
+    *swapped = contact.impact.vehicle[0] == 1;
+    const cp_vehicle_model *by_role[2] = {models[*swapped], models[!*swapped]};
+    *facts = (cp_crash_facts){
+        .time_s = contact.impact.time_s,
+        .contact_m = contact.impact.contact_m,
+        .configuration = cp_impact_configuration(&contact.impact, by_role[0], by_role[1]),
+        .description = cp_impact_describe(&contact.impact, by_role[0], by_role[1])};
+    return CP_OK;
+}
+
+static cp_status facts_of_description(const cp_listed_configuration *row, const char *list_path,
+                                      const cp_vehicle_model *models[2], cp_crash_facts *facts,
+                                      bool *swapped, cp_error *error)
+{
+    cp_crash_configuration *configuration = &facts->configuration;
+    *facts = (cp_crash_facts){0};
+    cp_status status = cp_crash_configuration_from_description(
+        models[0], models[1], NULL, row->speed_m_s[0], row->speed_m_s[1], row->offset_m,
+        row->angle_rad, &facts->configuration, error);
+    if (status != CP_OK) {
+        cp_error_prefix(error, "%s:%zu: ", list_path, row->line);
+        return status;
+    }
+    facts->contact_m = cp_crash_contact_point(models[0], models[1], configuration);
+    *swapped = configuration->side[0] != CP_SIDE_FRONT && configuration->side[1] == CP_SIDE_FRONT;
+    if (*swapped) {
+        cp_body_state first = configuration->vehicle[0];
+        cp_contact_side first_side = configuration->side[0];
+        configuration->vehicle[0] = configuration->vehicle[1];
+        configuration->side[0] = configuration->side[1];
+        configuration->vehicle[1] = first;
+        configuration->side[1] = first_side;
+    }
+    facts->description =
+        cp_crash_describe(models[*swapped], models[!*swapped], configuration, facts->contact_m);
+    return CP_OK;
+}
+
+// The vehicle that a row names, else the default.
+static cp_status choose_listed(const cp_listed_configuration *row, int v, const char *list_path,
+                               const cp_fleet *fleet, cp_fleet_choice *choice, cp_error *error)
+{
+    const cp_sumo_type any = standard_car();
+    if (row->vehicle[v] == NULL && fleet->models[0].name[0] == '\0')
+        return cp_fail(
+            error, CP_BAD_INPUT,
+            "%s:%zu: vehicle_%c must name a vehicle where there is no default (--vehicle)",
+            list_path, row->line, "ab"[v]);
+    return cp_fleet_choose(fleet, list_path, row->vehicle[v] != NULL ? row->vehicle[v] : "", &any,
+                           choice, error);
+}
+
+static cp_status assess_row(const cp_configuration_list *list, size_t number, const char *list_path,
+                            const cp_fleet *fleet, cp_result_rows *results, cp_error *error)
+{
+    const cp_listed_configuration *row = &list->row[number];
+    const char *type[2];
+    const cp_vehicle_model *models[2];
+    cp_fleet_choice choice[2];
+    cp_status status = CP_OK;
+    bool swapped = false;
+    cp_crash_facts facts;
+    char id[2][512];
+    for (int v = 0; v < 2; v++) {
+        type[v] = row->vehicle[v] != NULL ? row->vehicle[v] : "default";
+        if (status == CP_OK)
+            status = choose_listed(row, v, list_path, fleet, &choice[v], error);
+        snprintf(id[v], sizeof id[v], "%.500s.%c", row->id, "ab"[v]);
+    }
+    if (status != CP_OK)
+        return status;
+    models[0] = choice[0].model;
+    models[1] = choice[1].model;
+    status = list->has_poses
+                 ? facts_of_poses(row, list_path, models, &facts, &swapped, error)
+                 : facts_of_description(row, list_path, models, &facts, &swapped, error);
+    if (status != CP_OK)
+        return status;
+
+    // Role a is a car whose front is struck: the list's b where only its front is.
+    const cp_stand_in cars[2] = {{choice[swapped], *models[swapped]},
+                                 {choice[!swapped], *models[!swapped]}};
+    cp_impact_names names = {.sumo_id = {id[swapped], id[!swapped]},
+                             .sumo_type = {type[swapped], type[!swapped]}};
+    for (int role = 0; role < 2; role++) {
+        facts.length_m[role] = cars[role].model.length_m;
+        facts.width_m[role] = cars[role].model.width_m;
+    }
+    cp_crash_row *crash = cp_result_rows_add_crash(results);
+    return crash != NULL ? cp_crash_record_facts(&facts, &names, cars, crash, error)
+                         : cp_fail_memory(error, "crash");
+}
+
+cp_status cp_assess_configurations(const cp_configuration_list *list, const char *list_path,
+                                   const cp_fleet *fleet, cp_result_rows *results,
+                                   cp_assessment_count *count, cp_error *error)
+{
+    *count = (cp_assessment_count){.listed = list->count};
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < list->count; k++)
+        status = assess_row(list, k, list_path, fleet, results, error);
+    count->crashes = results->crash_count;
+    return status;
+}

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef EXCHANGE_CONFIGURATIONS_CSV_H
+#define EXCHANGE_CONFIGURATIONS_CSV_H
+
+#include "core/error.h"
+#include "core/geometry.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Lists of crash configurations, one a row: cases of an accident database, of another simulator, of
+ * a test plan. A first line names the columns, in any order; comma between fields, no quotes; empty
+ * lines and lines that begin with # are passed over.
+ *
+ *   either  speed_a_km_h speed_b_km_h offset_mm angle_deg      as of 'crashpulse crash': b's front
+ *                                                              edge in a's frame, 0 oncoming
+ *   or      x_a_m y_a_m heading_a_deg speed_a_km_h             centres of gravity and headings
+ *           x_b_m y_b_m heading_b_deg speed_b_km_h             (counter-clockwise from +x) before
+ *                                                              contact; each goes on with its speed
+ *           [yaw_rate_a_deg_s yaw_rate_b_deg_s]                and turn, default 0
+ *   and     [id vehicle_a vehicle_b]                           a name; shipped vehicles, or files
+ * as seen from the list; default: the caller's */
+
+typedef struct cp_listed_configuration {
+    size_t line;         /* of the file */
+    char *id;            /* owned; the number of the row, from 1, where the list has none */
+    char *vehicle[2];    /* owned; as written; NULL: default */
+    double speed_m_s[2]; /* forward, >= 0, not both 0 */
+    double offset_m;     /* unless has_poses */
+    double angle_rad;    /* likewise */
+    cp_pose pose[2];     /* of the centres of gravity */
+    double yaw_rate_rad_s[2];
+} cp_listed_configuration;
+
+typedef struct cp_configuration_list {
+    cp_listed_configuration *row;
+    size_t count;
+    bool has_poses; /* the second kind */
+} cp_configuration_list;
+
+/* The caller destroys. Errors: CP_BAD_INPUT with file, line and column: a column that is unknown,
+ * given twice or missing, a number that is none or out of range, an id given twice; CP_NO_MEMORY.
+ * After an error the list is destroyed already. */
+CP_MUST_CHECK cp_status cp_configurations_csv_read(const char *path, cp_configuration_list *list,
+                                                   cp_error *error);
+void cp_configuration_list_destroy(cp_configuration_list *list);
+
+#endif

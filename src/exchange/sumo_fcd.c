@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "exchange/sumo_fcd.h"
+
+#include "core/units.h"
+#include "exchange/xml_file.h"
+
+#include <math.h>
+#include <search.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Times are written with two or three digits.
+#define TIME_ROUNDING_S 0.0051
+
+// One vehicle of one collision, to be found by its id.
+typedef struct wanted {
+    const char *id;
+    size_t collision;
+    int role;
+} wanted;
+
+typedef struct reading {
+    const cp_collision_list *list;
+    double before_s, after_s;
+    cp_fcd_record *record;
+    wanted *wanted; /* by id */
+    size_t wanted_count;
+    void *seen; /* ids of all vehicles, a binary tree */
+    size_t steps;
+    double first_s, time_s;
+} reading;
+
+static int compare_wanted(const void *one, const void *other)
+{
+    const wanted *a = one, *b = other;
+    int order = strcmp(a->id, b->id);
+    if (order == 0)
+        order = a->collision < b->collision ? -1 : a->collision > b->collision;
+    return order;
+}
+
+static int compare_texts(const void *one, const void *other)
+{
+    return strcmp(one, other);
+}
+
+static cp_status count_vehicle(reading *self, const char *id, cp_error *error)
+{
+    if (tfind(id, &self->seen, compare_texts) != NULL)
+        return CP_OK;
+    char *own = strdup(id);
+    if (own == NULL || tsearch(own, &self->seen, compare_texts) == NULL) {
+        free(own);
+        return cp_fail_memory(error, "vehicles");
+    }
+    self->record->departed++;
+    return CP_OK;
+}
+
+static cp_status append(cp_fcd_track *track, cp_fcd_sample sample, cp_error *error)
+{
+    if ((track->count & (track->count - 1)) == 0) {
+        size_t room = track->count == 0 ? 1 : 2 * track->count;
+        cp_fcd_sample *larger = realloc(track->sample, room * sizeof *larger);
+        if (larger == NULL)
+            return cp_fail_memory(error, "ways of vehicles");
+        track->sample = larger;
+    }
+    track->sample[track->count++] = sample;
+    return CP_OK;
+}
+
+static cp_status take_step(reading *self, const cp_xml_element *element, cp_error *error)
+{
+    double before_s = self->time_s;
+    cp_status status = cp_xml_number(element, "time", -INFINITY, INFINITY, &self->time_s, error);
+    if (status != CP_OK)
+        return status;
+    double step_s = self->time_s - before_s;
+    if (self->steps == 0)
+        self->first_s = self->time_s;
+    else if (!(step_s > 0.0))
+        return cp_fail(error, CP_BAD_INPUT,
+                       "%s:%zu: time of <timestep> must rise, found %g after %g", element->path,
+                       element->line, self->time_s, before_s);
+    else if (self->steps == 1)
+        self->record->step_length_s = step_s;
+    else if (fabs(step_s - self->record->step_length_s) > TIME_ROUNDING_S)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "%s:%zu: <timestep> must follow the one before after %g s as the first ones "
+                       "do, found %g s",
+                       element->path, element->line, self->record->step_length_s, step_s);
+    self->steps++;
+    return CP_OK;
+}
+
+// From degrees clockwise from north; in (-pi, pi], and 0 exactly for due east.
+static double yaw_of(double angle_deg)
+{
+    double yaw_deg = remainder(90.0 - angle_deg, 360.0);
+    return cp_rad_from_deg(yaw_deg <= -180.0 ? 180.0 : yaw_deg);
+}
+
+static cp_status take_vehicle(reading *self, const cp_xml_element *element, cp_error *error)
+{
+    const char *id = NULL;
+    double speed_m_s = 0.0, angle_deg = 0.0;
+    cp_fcd_sample sample = {.time_s = self->time_s};
+    if (self->steps == 0)
+        return cp_fail(error, CP_BAD_INPUT, "%s:%zu: <vehicle> must stand inside a <timestep>",
+                       element->path, element->line);
+    cp_status status = cp_xml_text(element, "id", &id, error);
+    if (status == CP_OK)
+        status = cp_xml_number(element, "speed", -1e3, 1e3, &speed_m_s, error);
+    if (status == CP_OK)
+        status = count_vehicle(self, id, error);
+    if (status != CP_OK)
+        return status;
+    self->record->vehicle_km += speed_m_s / 1000.0; // times the step length at the end
+    self->record->vehicle_h += 1.0 / 3600.0;
+
+    // Every collision of this vehicle that is near in time.
+    wanted key = {.id = id};
+    size_t low = 0, high = self->wanted_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (compare_wanted(&self->wanted[middle], &key) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (; status == CP_OK && low < self->wanted_count && strcmp(self->wanted[low].id, id) == 0;
+         low++) {
+        const wanted *found = &self->wanted[low];
+        double after_s = self->time_s - self->list->collision[found->collision].time_s;
+        if (after_s < -self->before_s || after_s > self->after_s)
+            continue;
+        status = cp_xml_number(element, "x", -1e9, 1e9, &sample.front_m.x, error);
+        if (status == CP_OK)
+            status = cp_xml_number(element, "y", -1e9, 1e9, &sample.front_m.y, error);
+        if (status == CP_OK)
+            status = cp_xml_number(element, "angle", -360.0, 360.0, &angle_deg, error);
+        sample.lane_position_m = NAN;
+        if (status == CP_OK && cp_xml_attribute(element, "pos") != NULL)
+            status = cp_xml_number(element, "pos", -1e9, 1e9, &sample.lane_position_m, error);
+        sample.yaw_rad = yaw_of(angle_deg);
+        sample.speed_m_s = speed_m_s;
+        if (status == CP_OK)
+            status = append(&self->record->track[found->collision][found->role], sample, error);
+    }
+    return status;
+}
+
+static cp_status visit(void *context, const cp_xml_element *element, cp_error *error)
+{
+    reading *self = context;
+    if (strcmp(element->name, "timestep") == 0)
+        return take_step(self, element, error);
+    return strcmp(element->name, "vehicle") == 0 ? take_vehicle(self, element, error) : CP_OK;
+}
+
+static cp_status begin(reading *self, cp_error *error)
+{
+    size_t count = self->list->count;
+    self->record->track = calloc(count + 1, sizeof *self->record->track);
+    self->wanted = calloc(2 * count + 1, sizeof *self->wanted);
+    if (self->record->track == NULL || self->wanted == NULL)
+        return cp_fail_memory(error, "ways of vehicles");
+    self->record->collision_count = count;
+    for (size_t k = 0; k < count; k++)
+        for (int role = 0; role < 2; role++)
+            self->wanted[self->wanted_count++] =
+                (wanted){self->list->collision[k].id[role], k, role};
+    qsort(self->wanted, self->wanted_count, sizeof *self->wanted, compare_wanted);
+    return CP_OK;
+}
+
+// Whether the ways are as long as the speeds say: positions in degrees (--fcd-output.geo) are not.
+static cp_status check_lengths(const char *path, const cp_fcd_record *record, cp_error *error)
+{
+    double way_m = 0.0, by_speed_m = 0.0;
+    for (size_t k = 0; k < record->collision_count; k++)
+        for (int role = 0; role < 2; role++) {
+            const cp_fcd_track *track = &record->track[k][role];
+            for (size_t i = 1; i < track->count; i++) {
+                const cp_fcd_sample *now = &track->sample[i], *before = &track->sample[i - 1];
+                way_m += cp_vec2_length(cp_vec2_sub(now->front_m, before->front_m));
+                by_speed_m += fabs(now->speed_m_s) * (now->time_s - before->time_s);
+            }
+        }
+    if (by_speed_m < 10.0 || way_m > 0.1 * by_speed_m)
+        return CP_OK;
+    return cp_fail(error, CP_BAD_INPUT,
+                   "%s: x and y must be metres, found ways of %g where speeds make %g m (was it "
+                   "written with --fcd-output.geo?)",
+                   path, way_m, by_speed_m);
+}
+
+cp_status cp_sumo_fcd_read(const char *path, const cp_collision_list *list, double before_s,
+                           double after_s, cp_fcd_record *record, cp_error *error)
+{
+    *record = (cp_fcd_record){0};
+    reading self = {.list = list, .before_s = before_s, .after_s = after_s, .record = record};
+    cp_status status = begin(&self, error);
+    if (status == CP_OK)
+        status = cp_xml_read(path, "fcd-export", visit, &self, error);
+    if (status == CP_OK && self.steps < 2)
+        status = cp_fail(error, CP_BAD_INPUT, "%s: must hold at least two <timestep>, found %zu",
+                         path, self.steps);
+    while (self.seen != NULL) {
+        char *id = *(char **)self.seen;
+        tdelete(id, &self.seen, compare_texts);
+        free(id);
+    }
+    free(self.wanted);
+    if (status == CP_OK)
+        status = check_lengths(path, record, error);
+    if (status != CP_OK) {
+        cp_fcd_record_destroy(record);
+        return status;
+    }
+    // The mean step is free of the rounding of written times.
+    record->simulated_s = self.time_s - self.first_s;
+    record->step_length_s = record->simulated_s / (double)(self.steps - 1);
+    record->vehicle_km *= record->step_length_s;
+    record->vehicle_h *= record->step_length_s;
+    return CP_OK;
+}
+
+void cp_fcd_record_destroy(cp_fcd_record *record)
+{
+    for (size_t k = 0; k < record->collision_count; k++)
+        for (int role = 0; role < 2; role++)
+            free(record->track[k][role].sample);
+    free(record->track);
+    *record = (cp_fcd_record){0};
+}

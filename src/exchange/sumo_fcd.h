@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef EXCHANGE_SUMO_FCD_H
+#define EXCHANGE_SUMO_FCD_H
+
+#include "core/geometry.h"
+#include "exchange/sumo_collisions.h"
+
+/* The ways of colliding vehicles out of a SUMO run's --fcd-output. SUMO's frame becomes ours here:
+ * headings counter-clockwise from +x, rad. */
+
+typedef struct cp_fcd_sample {
+    double time_s;
+    cp_vec2 front_m; /* middle of the front bumper */
+    double yaw_rad;
+    double speed_m_s;
+    double lane_position_m; /* NAN where the file does not tell */
+} cp_fcd_sample;
+
+/* One vehicle around one collision, in order of time. */
+typedef struct cp_fcd_track {
+    cp_fcd_sample *sample;
+    size_t count;
+} cp_fcd_track;
+
+typedef struct cp_fcd_record {
+    cp_fcd_track (*track)[2]; /* one pair of tracks for each collision of the list */
+    size_t collision_count;
+    double step_length_s; /* between the time steps of the file */
+    double simulated_s;   /* from the first to the last */
+    double vehicle_km;    /* driven by all vehicles of the file, by their speeds */
+    double vehicle_h;
+    size_t departed; /* different vehicles in the file */
+} cp_fcd_record;
+
+/* Read a file: of each listed collision both vehicles from before_s before its report to after_s
+ * after it. The caller destroys. Errors: CP_BAD_INPUT with file, line, attribute, also for time
+ * steps that do not follow each other at one distance, fewer than two of them, or a file written
+ * with
+ * --fcd-output.geo; CP_NO_MEMORY. After an error the record is destroyed already. */
+CP_MUST_CHECK cp_status cp_sumo_fcd_read(const char *path, const cp_collision_list *list,
+                                         double before_s, double after_s, cp_fcd_record *record,
+                                         cp_error *error);
+void cp_fcd_record_destroy(cp_fcd_record *record);
+
+#endif

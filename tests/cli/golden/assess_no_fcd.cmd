@@ -1,0 +1,1 @@
+"$crashpulse" assess --collisions coll.xml --vehicle car.yaml

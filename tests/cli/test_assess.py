@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""crashpulse assess against the study it stands in for: the same traffic is run by 'sumo', which
+writes its collisions and floating car data, and by 'crashpulse run'; the crashes agree to what the
+files' digits allow. Lists of configurations agree with 'crashpulse crash'."""
+import argparse
+import csv
+import json
+import math
+import os
+import pathlib
+import sqlite3
+import subprocess
+import sys
+import tempfile
+
+parser = argparse.ArgumentParser()
+parser.add_argument("--crashpulse", required=True)
+parser.add_argument("--network", required=True, help="folder of the crossing")
+parser.add_argument("--vehicles", required=True)
+arguments = parser.parse_args()
+crashpulse = arguments.crashpulse
+vehicles = pathlib.Path(arguments.vehicles)
+network = pathlib.Path(arguments.network) / "crossing.net.xml"
+# Sanitizers' preload is not for SUMO's program.
+environment = {**os.environ, "SUMO_HOME": "/usr/share/sumo"}
+environment.pop("LD_PRELOAD", None)
+
+
+def run(*words, expect=0):
+    result = subprocess.run([str(word) for word in words], capture_output=True, text=True,
+                            env=environment)
+    if result.returncode != expect:
+        sys.exit(f"{words}: exit code {result.returncode}\n{result.stdout}{result.stderr}")
+    return result
+
+
+def rows(*words):
+    return list(csv.DictReader(run(crashpulse, "assess", *words, "--format",
+                                   "csv").stdout.splitlines()))
+
+
+def crashes(database):
+    return sqlite3.connect(database).execute(
+        "SELECT a.sumo_id, b.sumo_id, c.time_s, c.closing_speed_m_s, c.lateral_offset_m, "
+        "c.angle_rad, a.olc_g, b.olc_g, a.delta_v_m_s, c.crash_type, c.validity, a.vehicle_model "
+        "FROM crash AS c JOIN crash_vehicle AS a ON a.crash_id = c.id AND a.role = 'a' "
+        "JOIN crash_vehicle AS b ON b.crash_id = c.id AND b.role = 'b' ORDER BY c.number").fetchall()
+
+
+def routes():
+    """Pairs of a car and a van turning left before it without looking, each a little later."""
+    types = "".join(f'<vType id="{name}" {size} sigma="0" speedDev="0" '
+                    'jmIgnoreFoeProb="1" jmIgnoreFoeSpeed="100" jmIgnoreJunctionFoeProb="1"/>\n'
+                    for name, size in (("car", 'length="4.5" width="1.8"'),
+                                       ("van", 'vClass="delivery" length="5.5" width="2" height="2"')))
+    departures = sorted([(10 + 20 * k, "through", k, "car") for k in range(10)] +
+                        [(9 + 20.15 * k, "left", k, "van") for k in range(10)])
+    return ("<routes>\n" + types + '<route id="through" edges="west_in east_out"/>\n'
+            '<route id="left" edges="east_in south_out"/>\n' +
+            "".join(f'<vehicle id="{route}.{k}" type="{kind}" route="{route}" depart="{at:.2f}" '
+                    'departSpeed="desired"/>\n' for at, route, k, kind in departures) +
+            "</routes>\n")
+
+
+OURS = ["--step-method.ballistic", "true", "--collision.action", "warn",
+        "--collision.mingap-factor", "0"]
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    (folder / "x.rou.xml").write_text(routes())
+    (folder / "x.sumocfg").write_text(
+        f'<configuration><input><net-file value="{network}"/><route-files value="x.rou.xml"/>'
+        "</input></configuration>\n")
+    (folder / "x.yaml").write_text(
+        "study: x\ndesign: independent\nseed: 1\nreplications: 1\nduration_s: 320\n"
+        "scenarios:\n  - {name: x, sumocfg: x.sumocfg}\nvariants:\n  - name: baseline\n"
+        f"vehicles:\n  default: {vehicles}/mid_size.yaml\n"
+        f"  types: [{{type: van, model: {vehicles}/van.yaml}}]\n")
+
+    def sumo(label, *options):
+        run("sumo", "-c", folder / "x.sumocfg", "--step-length", "0.05", "--no-step-log", "true",
+            "--collision.check-junctions", "true", "--fcd-output", folder / f"{label}.fcd.xml",
+            "--collision-output", folder / f"{label}.coll.xml", *options)
+        return ["--collisions", folder / f"{label}.coll.xml", "--fcd", folder / f"{label}.fcd.xml",
+                "--routes", folder / "x.rou.xml", "--vehicle", vehicles / "mid_size.yaml",
+                "--type", f"van={vehicles}/van.yaml"]
+
+    # The same crashes, roles, times, configurations and severities as the study's.
+    assess = sumo("ours", *OURS, "--precision", "9")
+    run(crashpulse, "run", folder / "x.yaml", "--db", folder / "run.db")
+    found = rows(*assess, "--db", folder / "assess.db")
+    ours, theirs = crashes(folder / "assess.db"), crashes(folder / "run.db")
+    assert len(theirs) >= 5 and len(ours) == len(theirs) == len(found), (ours, theirs)
+    for one, other in zip(ours, theirs):
+        for mine, yours in zip(one, other):
+            same = (math.isclose(mine, yours, rel_tol=1e-4, abs_tol=1e-4)
+                    if isinstance(mine, float) else mine == yours)
+            assert same, (one, other)
+    for crash, row in zip(found, ours):
+        assert (crash["a"], crash["b"]) == row[:2]
+        assert math.isclose(float(crash["closing_speed_km_h"]), 3.6 * row[3])
+        assert row[6] is None or math.isclose(float(crash["olc_a_g"]), row[6])
+    verdict = "SELECT found_as, count(*) FROM sumo_collision GROUP BY 1"
+    check = run(crashpulse, "check", folder / "assess.db", "--format", "csv").stdout
+    assert all(row["wrong"] == "0" for row in csv.DictReader(check.splitlines())), check
+    assert sqlite3.connect(folder / "assess.db").execute(
+        "SELECT design FROM study").fetchone() == ("assessment",)
+    # Again: nothing new; another list into the same database is refused.
+    before = crashes(folder / "assess.db")
+    again = run(crashpulse, "assess", *assess, "--db", folder / "assess.db")
+    assert "holds these crashes already" in again.stderr and crashes(folder / "assess.db") == before
+
+    # SUMO's defaults: Euler's update, reports before contact, colliding vehicles put elsewhere. The
+    # pairs are the same, those beyond the record carried on.
+    defaults = sumo("sumo", "--precision", "9")
+    other = rows(*defaults)
+    assert [(c["a"], c["b"]) for c in other] == [row[:2] for row in theirs], other
+    for crash, row in zip(other, theirs):
+        assert abs(float(crash["closing_speed_km_h"]) / 3.6 - row[3]) < 0.6, (crash, row)
+        assert abs(float(crash["time_s"]) - row[2]) < 0.2, (crash, row)
+    refused = run(crashpulse, "assess", *defaults, "--db", folder / "assess.db", expect=2).stderr
+    assert "assess.db: has results of another configuration" in refused, refused
+
+    # Without a word about cars: by class and size of the vTypes.
+    by_size = rows(*assess[:6])
+    assert {(c["model_a"], c["model_b"]) for c in by_size} == {("van", "honda_accord_2014")}, by_size
+
+    # Records of other runs, and what is wrong with a file, by line.
+    fcd = (folder / "ours.fcd.xml").read_text()
+    (folder / "empty.xml").write_text(
+        '<fcd-export>\n<timestep time="0"/>\n<timestep time="0.05"/>\n</fcd-export>\n')
+    wrong = ["--collisions", folder / "ours.coll.xml", "--fcd", folder / "empty.xml",
+             "--vehicle", vehicles / "mid_size.yaml"]
+    message = run(crashpulse, "assess", *wrong, expect=2).stderr
+    assert "ours.coll.xml:" in message and "must be on the road around" in message, message
+    (folder / "cut.xml").write_text(fcd[:len(fcd) // 2])
+    wrong[3] = folder / "cut.xml"
+    message = run(crashpulse, "assess", *wrong, expect=2).stderr
+    assert "cut.xml:" in message and "is not XML" in message, message
+
+    # A list of configurations: what 'crashpulse crash' says of each; b's front into a's side makes
+    # b the one whose front is struck; poses lead to the configuration they were made from.
+    (folder / "list.csv").write_text(
+        "id,speed_a_km_h,speed_b_km_h,offset_mm,angle_deg,vehicle_b\n"
+        f"one,50,40,300,10,\ntwo,56,30,-200,0,{vehicles / 'van.yaml'}\n")
+    listed = rows("--configurations", folder / "list.csv", "--vehicle", vehicles / "mid_size.yaml",
+                  "--db", folder / "list.db")
+    for row, words in zip(listed, (
+            ["mid_size.yaml", "--speed", 50, "--opponent-speed", 40, "--offset", 300, "--angle", 10],
+            ["van.yaml", "--speed", 56, "--opponent-speed", 30, "--offset", -200, "--angle", 0])):
+        alone = json.loads(run(crashpulse, "crash", vehicles / "mid_size.yaml", "--against",
+                               vehicles / words[0], *words[1:], "--format", "json").stdout)
+        assert math.isclose(float(row["olc_a_g"]), alone["vehicles"][0]["olc_g"]), (row, alone)
+        assert math.isclose(float(row["olc_b_g"]), alone["vehicles"][1]["olc_g"]), (row, alone)
+        assert row["validity_a"] == alone["vehicles"][0]["validity"], (row, alone)
+    assert [row["a"] for row in listed] == ["one.a", "two.a"]
+    assert sqlite3.connect(folder / "list.db").execute(
+        "SELECT count(*), sum(vehicle_km) FROM crash, replication").fetchone() == (2, 0.0)
+    (folder / "poses.csv").write_text(
+        "x_a_m,y_a_m,heading_a_deg,speed_a_km_h,x_b_m,y_b_m,heading_b_deg,speed_b_km_h\n"
+        "0,0,90,50,0.3,14,270,40\n0,0,0,30,3,-9,90,60\n")
+    head_on, side = rows("--configurations", folder / "poses.csv", "--vehicle",
+                         vehicles / "mid_size.yaml")
+    assert abs(float(head_on["offset_mm"]) + 300) < 1e-6 and abs(float(head_on["angle_deg"])) < 1e-6
+    assert math.isclose(float(head_on["closing_speed_km_h"]), 90.0)
+    assert (side["a"], side["side_a"], side["side_b"]) == ("2.b", "front", "right"), side
+    (folder / "poses.csv").write_text(
+        "x_a_m,y_a_m,heading_a_deg,speed_a_km_h,x_b_m,y_b_m,heading_b_deg,speed_b_km_h\n"
+        "0,0,0,50,0,14,0,40\n")
+    message = run(crashpulse, "assess", "--configurations", folder / "poses.csv", "--vehicle",
+                  vehicles / "mid_size.yaml", expect=2).stderr
+    assert "poses.csv:2: the two must meet within" in message, message

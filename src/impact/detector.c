@@ -196,7 +196,18 @@ static cp_status judge(const cp_detector_scene *scene, const cp_vehicle_motion *
 {
     cp_road_relation relation = CP_ROADS_MEET;
     cp_status status = CP_OK;
-    if (scene->road_relation != NULL)
+
+    // Where on the road they are: at the end of the step.
+    for (int role = 0; status == CP_OK && role < 2; role++) {
+        const cp_vehicle_motion *own = motion[motion[0]->after.vehicle != impact->vehicle[role]];
+        cp_vehicle_state end = own->after;
+        if (scene->place != NULL)
+            status = scene->place(scene->road_context, &end, error);
+        impact->state[role].lane = end.lane;
+        impact->state[role].lane_position_m = end.lane_position_m;
+        impact->state[role].is_in_junction = end.is_in_junction;
+    }
+    if (status == CP_OK && scene->road_relation != NULL)
         status = scene->road_relation(scene->road_context, &impact->state[0], &impact->state[1],
                                       &relation, error);
     if (relation == CP_ROADS_APART)
@@ -348,6 +359,11 @@ static cp_status relation_in_traffic(const void *context, const cp_vehicle_state
     return cp_traffic_road_relation(context, one, other, relation, error);
 }
 
+static cp_status place_in_traffic(const void *context, cp_vehicle_state *state, cp_error *error)
+{
+    return cp_traffic_place(context, state, error);
+}
+
 cp_status cp_detector_step(cp_detector *detector, const cp_traffic *traffic,
                            bool (*is_at_fault)(void *context, uint32_t vehicle), void *context,
                            const cp_impact **impacts, size_t *count, cp_error *error)
@@ -358,6 +374,7 @@ cp_status cp_detector_step(cp_detector *detector, const cp_traffic *traffic,
                                .id_context = traffic,
                                .is_at_fault = is_at_fault,
                                .fault_context = context,
+                               .place = place_in_traffic,
                                .road_relation = relation_in_traffic,
                                .road_context = traffic};
     scene.motions = cp_traffic_motions(traffic, &scene.count);

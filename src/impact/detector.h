@@ -14,6 +14,8 @@ typedef struct cp_detector_scene {
     const void *id_context;
     bool (*is_at_fault)(void *context, uint32_t vehicle); /* may be NULL */
     void *fault_context;
+    /* Fill in where a vehicle is on the road at the end of the step; NULL: states tell it. */
+    cp_status (*place)(const void *context, cp_vehicle_state *state, cp_error *error);
     /* Whether two that touch in the plane can do so on the ground; NULL: all can. */
     cp_status (*road_relation)(const void *context, const cp_vehicle_state *one,
                                const cp_vehicle_state *other, cp_road_relation *relation,

@@ -74,9 +74,6 @@ cp_vehicle_state cp_motion_at(const cp_vehicle_motion *motion, double step_lengt
     state.front_y_m = before->front_y_m + moved.share_1 * chord_m.y;
     state.yaw_rad = cp_wrap_angle(before->yaw_rad + fraction * turn_rad);
     state.speed_m_s = moved.speed_m_s;
-    if (before->lane == after->lane)
-        state.lane_position_m = before->lane_position_m +
-                                moved.share_1 * (after->lane_position_m - before->lane_position_m);
     return state;
 }
 

@@ -12,7 +12,7 @@ cp_rectangle cp_footprint_of_state(const cp_vehicle_state *state);
 
 /* State inside the step: fraction 0 = beginning, 1 = end. Constant acceleration along the chord
  * between the two positions (ballistic update; a vehicle that comes to rest inside the step stands
- * from there on), heading turned evenly; speed likewise. Lane and type are those of the end. Of a
+ * from there on), heading turned evenly; speed likewise. Place and type are those of the end. Of a
  * motion whose vehicle was not present before: the state of the end. */
 cp_vehicle_state cp_motion_at(const cp_vehicle_motion *motion, double step_length_s,
                               double fraction);

@@ -36,6 +36,14 @@ static cp_status create_controls(const cp_study *study, const cp_study_scenario 
     return status;
 }
 
+// Drivers and functions ask where on the road cars are; so do the treatments of branches.
+static bool needs_places(const cp_study *study, const cp_study_scenario *scenario,
+                         const cp_study_variant *variant)
+{
+    bool is_treated = study->design == CP_DESIGN_COUNTERFACTUAL;
+    return scenario->driver_error_count > 0 || variant->function_count > 0 || is_treated;
+}
+
 cp_status cp_simulation_begin(const cp_study *study, const cp_study_scenario *scenario,
                               const cp_study_variant *variant, uint64_t seed,
                               cp_simulation *simulation, cp_error *error)
@@ -52,6 +60,8 @@ cp_status cp_simulation_begin(const cp_study *study, const cp_study_scenario *sc
                                   .option_count = words.count};
     status = cp_traffic_create(&options, &simulation->traffic, error);
     cp_sumo_words_destroy(&words);
+    if (status == CP_OK)
+        cp_traffic_read_places(simulation->traffic, needs_places(study, scenario, variant));
     if (status == CP_OK)
         status = create_controls(study, scenario, variant, seed, simulation->traffic,
                                  &simulation->controls, error);

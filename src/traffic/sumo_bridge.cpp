@@ -67,6 +67,8 @@ struct Bridge {
     std::vector<Size> size_of_type;
     std::vector<cp_vehicle_state> states;
     std::vector<uint32_t> departed, gone, present, present_before;
+    std::vector<uint32_t> type_of, lane_of; // by vehicle number: as last seen
+    bool reads_places = true;
     std::vector<uint64_t> seen_in_step; // by vehicle number
     uint64_t step = 0;
     std::vector<cp_sumo_collision> collisions;
@@ -273,25 +275,60 @@ double yaw_of_sumo_angle(double angle_deg)
     return cp_rad_from_deg(yaw_deg <= -180.0 ? 180.0 : yaw_deg);
 }
 
+// Number of a vehicle. SUMO lists ids in order: those of the last step are looked through along
+// with those of this one, so that few are looked up.
+uint32_t number_vehicle(const std::string &id, size_t *cursor)
+{
+    const std::vector<uint32_t> &before = bridge->present_before;
+    while (*cursor < before.size() && *bridge->vehicles.name(before[*cursor]) < id)
+        ++*cursor;
+    if (*cursor < before.size() && *bridge->vehicles.name(before[*cursor]) == id)
+        return before[(*cursor)++];
+    return bridge->vehicles.number(id);
+}
+
+// What stays the same as long as a vehicle exists: looked up when it is first seen.
+uint32_t type_of_vehicle(const std::string &id, uint32_t vehicle)
+{
+    if (vehicle >= bridge->type_of.size()) {
+        bridge->type_of.resize(2 * static_cast<size_t>(vehicle) + 64, SUMO_BRIDGE_NONE);
+        bridge->lane_of.resize(bridge->type_of.size(), SUMO_BRIDGE_NONE);
+    }
+    uint32_t &type = bridge->type_of[vehicle];
+    if (type == SUMO_BRIDGE_NONE)
+        type = number_type(libsumo::Vehicle::getTypeID(id));
+    return type;
+}
+
+void read_place(const std::string &id, cp_vehicle_state *state)
+{
+    // The lane is mostly that of the step before.
+    const std::string lane = libsumo::Vehicle::getLaneID(id);
+    uint32_t &last = bridge->lane_of[state->vehicle];
+    if (last == SUMO_BRIDGE_NONE || *bridge->lanes.name(last) != lane)
+        last = bridge->lanes.number(lane);
+    state->lane = last;
+    state->is_in_junction = !lane.empty() && lane[0] == ':';
+    state->lane_position_m = libsumo::Vehicle::getLanePosition(id);
+}
+
 // Read one vehicle; false when it is not on the road.
-bool read_vehicle(const std::string &id, cp_vehicle_state *state)
+bool read_vehicle(const std::string &id, size_t *cursor, cp_vehicle_state *state)
 {
     using libsumo::Vehicle;
     const libsumo::TraCIPosition position = Vehicle::getPosition(id, true);
     if (position.x <= -1e9 || position.y <= -1e9)
         return false;
-    state->vehicle = bridge->vehicles.number(id);
-    state->type = number_type(Vehicle::getTypeID(id));
-    const std::string lane = Vehicle::getLaneID(id);
-    state->lane = bridge->lanes.number(lane);
-    state->is_in_junction = !lane.empty() && lane[0] == ':';
+    *state = cp_vehicle_state{};
+    state->vehicle = number_vehicle(id, cursor);
+    state->type = type_of_vehicle(id, state->vehicle);
+    if (bridge->reads_places)
+        read_place(id, state);
     state->front_x_m = position.x;
     state->front_y_m = position.y;
     state->elevation_m = position.z;
     state->yaw_rad = yaw_of_sumo_angle(Vehicle::getAngle(id));
     state->speed_m_s = Vehicle::getSpeed(id);
-    state->acceleration_m_s2 = Vehicle::getAcceleration(id);
-    state->lane_position_m = Vehicle::getLanePosition(id);
     state->length_m = bridge->size_of_type[state->type].length_m;
     state->width_m = bridge->size_of_type[state->type].width_m;
     return true;
@@ -305,9 +342,10 @@ void step()
     bridge->present_before.swap(bridge->present);
     bridge->present.clear();
     bridge->states.clear();
+    size_t cursor = 0;
     for (const std::string &id : libsumo::Vehicle::getIDList()) {
         cp_vehicle_state state;
-        if (!read_vehicle(id, &state))
+        if (!read_vehicle(id, &cursor, &state))
             continue;
         bridge->states.push_back(state);
         bridge->present.push_back(state.vehicle);
@@ -502,6 +540,18 @@ cp_status sumo_bridge_step(const cp_vehicle_state **states, size_t *count, cp_er
     *states = bridge->states.data();
     *count = bridge->states.size();
     return CP_OK;
+}
+
+void sumo_bridge_read_places(bool wanted)
+{
+    if (bridge)
+        bridge->reads_places = wanted;
+}
+
+cp_status sumo_bridge_place(cp_vehicle_state *state, cp_error *error)
+{
+    return command_vehicle("place", state->vehicle, error,
+                           [=](const std::string &id) { read_place(id, state); });
 }
 
 double sumo_bridge_time_s(void)

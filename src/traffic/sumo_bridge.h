@@ -32,17 +32,18 @@ extern "C" {
 typedef struct cp_vehicle_state {
     uint32_t vehicle; /* number, see sumo_bridge_vehicle_id */
     uint32_t type;    /* number, see sumo_bridge_type_id */
-    uint32_t lane;    /* number, see sumo_bridge_lane_id */
+    uint32_t lane;    /* number, see sumo_bridge_lane_id; as the next two marked * only if places
+                         are read (sumo_bridge_read_places), else 0 */
     double front_x_m;
     double front_y_m;
     double elevation_m; /* 0 where the network is flat */
     double yaw_rad;
-    double speed_m_s; /* forward */
-    double acceleration_m_s2;
-    double lane_position_m; /* front, along the lane */
+    double speed_m_s;         /* forward */
+    double acceleration_m_s2; /* mean of the step by the speeds; filled in by the traffic */
+    double lane_position_m;   /* front, along the lane * */
     double length_m;
     double width_m;
-    bool is_in_junction; /* its front */
+    bool is_in_junction; /* its front * */
 } cp_vehicle_state;
 
 /* One collision as SUMO itself reports it. */
@@ -98,6 +99,11 @@ void sumo_bridge_stop(void);
 /* Advance one step; states of all vehicles on the road after it, in SUMO's order. */
 CP_MUST_CHECK cp_status sumo_bridge_step(const cp_vehicle_state **states, size_t *count,
                                          cp_error *error);
+/* Whether states come with lane, place along it and is_in_junction, which take SUMO's look-up by id
+ * three times a vehicle; default true. Without, sumo_bridge_place tells them of one vehicle. */
+void sumo_bridge_read_places(bool wanted);
+/* Fill these three of a state of the last step. A vehicle that is gone is CP_TRAFFIC_FAILED. */
+CP_MUST_CHECK cp_status sumo_bridge_place(cp_vehicle_state *state, cp_error *error);
 /* SUMO's clock after the last step, s. */
 double sumo_bridge_time_s(void);
 /* Vehicles loaded but not yet arrived, waiting ones included: 0 means nothing more will come. */

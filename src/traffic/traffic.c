@@ -32,6 +32,7 @@ struct cp_traffic {
     held_vehicle *held;
     size_t held_count;
     size_t held_room;
+    bool lacks_places; /* of the states */
     cp_exposure exposure;
 };
 
@@ -133,6 +134,8 @@ static cp_vehicle_motion motion_to(const cp_traffic *traffic, const cp_vehicle_s
     if (has_jumped(before, after, traffic->step_length_s))
         return motion;
     motion.before = *before;
+    motion.after.acceleration_m_s2 =
+        (after->speed_m_s - before->speed_m_s) / traffic->step_length_s;
     motion.was_present = true;
     motion.yaw_rate_rad_s =
         cp_wrap_angle(after->yaw_rad - before->yaw_rad) / traffic->step_length_s;
@@ -316,6 +319,19 @@ cp_status cp_traffic_next_light(const cp_traffic *traffic, uint32_t vehicle, cp_
     if (traffic->source->next_light == NULL)
         return CP_OK;
     return traffic->source->next_light(vehicle, light, error);
+}
+
+void cp_traffic_read_places(cp_traffic *traffic, bool wanted)
+{
+    if (traffic->source->read_places == NULL)
+        return;
+    traffic->source->read_places(wanted);
+    traffic->lacks_places = !wanted;
+}
+
+cp_status cp_traffic_place(const cp_traffic *traffic, cp_vehicle_state *state, cp_error *error)
+{
+    return traffic->lacks_places ? traffic->source->place(state, error) : CP_OK;
 }
 
 cp_status cp_traffic_road_relation(const cp_traffic *traffic, const cp_vehicle_state *one,

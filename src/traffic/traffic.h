@@ -37,6 +37,9 @@ typedef struct cp_traffic_source {
     cp_status (*speed_factor)(uint32_t vehicle, double *factor_1, cp_error *error);
     cp_status (*set_parameter)(uint32_t vehicle, const char *key, const char *value,
                                cp_error *error);
+    /* May be NULL: states come with their places. */
+    void (*read_places)(bool wanted);
+    cp_status (*place)(cp_vehicle_state *state, cp_error *error);
     /* May be NULL: all lanes are SUMO's default, 3.2 m wide. */
     cp_status (*lane_width)(uint32_t lane, double *width_m, cp_error *error);
     /* May be NULL: there are no lights. */
@@ -84,6 +87,11 @@ const uint32_t *cp_traffic_departed(const cp_traffic *traffic, size_t *count);
 /* The traffic light a vehicle comes to next (sumo_bridge.h). */
 CP_MUST_CHECK cp_status cp_traffic_next_light(const cp_traffic *traffic, uint32_t vehicle,
                                               cp_next_light *light, cp_error *error);
+/* Whether states come with lane, place along it and is_in_junction (sumo_bridge.h; default true):
+ * nobody but controls needs them of all vehicles. cp_traffic_place fills them in for one. */
+void cp_traffic_read_places(cp_traffic *traffic, bool wanted);
+CP_MUST_CHECK cp_status cp_traffic_place(const cp_traffic *traffic, cp_vehicle_state *state,
+                                         cp_error *error);
 /* Whether two vehicles that touch in the plane can do so on the ground (sumo_bridge.h). */
 CP_MUST_CHECK cp_status cp_traffic_road_relation(const cp_traffic *traffic,
                                                  const cp_vehicle_state *one,

@@ -80,6 +80,40 @@ static void this_step_is_joined_to_the_last(void **unused)
     cp_traffic_destroy(traffic);
 }
 
+// Without places in the states they are told one by one, the same.
+static void places_can_be_asked_for(void **unused)
+{
+    (void)unused;
+    cp_error error = {0};
+    cp_vehicle_state with_places[8], state;
+    size_t count;
+    cp_traffic *traffic = create(0.1);
+    run_until(traffic, 5.0);
+    const cp_vehicle_motion *motions = cp_traffic_motions(traffic, &count);
+    assert_int_equal(count, 3);
+    for (size_t k = 0; k < count; k++)
+        with_places[k] = motions[k].after;
+    assert_true(with_places[0].lane_position_m > 100.0);
+    cp_traffic_destroy(traffic);
+
+    traffic = create(0.1);
+    cp_traffic_read_places(traffic, false);
+    run_until(traffic, 5.0);
+    motions = cp_traffic_motions(traffic, &count);
+    for (size_t k = 0; k < count; k++) {
+        state = motions[k].after;
+        assert_true(state.lane_position_m == 0.0);
+        assert_int_equal(cp_traffic_place(traffic, &state, &error), CP_OK);
+        assert_true(state.lane_position_m == with_places[k].lane_position_m);
+        assert_string_equal(sumo_bridge_lane_id(state.lane), k == 0   ? "east_0"
+                                                             : k == 1 ? "north_0"
+                                                                      : "west_0");
+        assert_true(state.front_x_m == with_places[k].front_x_m);
+        assert_true(state.speed_m_s == with_places[k].speed_m_s);
+    }
+    cp_traffic_destroy(traffic);
+}
+
 static void a_crashed_car_can_be_taken_off(void **unused)
 {
     (void)unused;
@@ -209,6 +243,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exposure_is_what_was_driven),
         cmocka_unit_test(this_step_is_joined_to_the_last),
+        cmocka_unit_test(places_can_be_asked_for),
         cmocka_unit_test(a_crashed_car_can_be_taken_off),
         cmocka_unit_test(a_crashed_car_can_stay_for_a_while),
         cmocka_unit_test(a_jump_is_no_motion),

@@ -42,6 +42,19 @@ def kill(pid):
         return False
 
 
+def is_at_work(pid):
+    """Whether a worker has begun with a replication (others only try whether SUMO starts)."""
+    try:
+        return b"--replication" in pathlib.Path(f"/proc/{pid}/cmdline").read_bytes()
+    except OSError:
+        return False
+
+
+def wait_for_replication(runner):
+    while runner.poll() is None and not any(map(is_at_work, workers_of(runner.pid))):
+        time.sleep(0.005)
+
+
 def done_in(db):
     """Replications done so far; 0 while there is no database yet."""
     try:
@@ -68,11 +81,14 @@ def disturb(study, db, generator, kills, pause_s):
 
     runner = start()
     while sum(done.values()) < kills:
-        # At a random moment; soon, when the study is ahead of the kills or near its end.
+        # At a random moment, of a replication mostly, of the preparations before it now and then;
+        # soon, when the study is far ahead of the kills or near its end.
         finished = done_in(db)
         behind = kills * (finished + 2) / total - sum(done.values())
-        hurry = behind >= 3 or finished >= total - 3
-        time.sleep(generator.uniform(0.0, pause_s / 10 if hurry else pause_s / 2))
+        hurry = behind >= 8 or finished >= total - 3
+        if generator.random() < 0.8:
+            wait_for_replication(runner)
+        time.sleep(generator.uniform(0.0, pause_s / 4 if hurry else pause_s / 2))
         if runner.poll() is not None:
             # It has ended by itself, with the failures that killed workers are.
             assert runner.returncode == 1, ("the study ended before the kills", done)

@@ -737,10 +737,22 @@
       add("difference in median closing speed, km/h (Mann–Whitney)", change(speed.median_difference), interval(speed.median_interval, km_h), "", pValue(speed.mann_whitney_p), pValue(speed.mann_whitney_p_holm));
       add("largest distance of the distributions (KS)", fixed(o.kolmogorov_smirnov_d, 2), "", "", pValue(o.kolmogorov_smirnov_p), "");
     });
+    // Crash by crash in the counterfactual design.
+    shownPairs().forEach(c => {
+      [["all_pairs", "avoided = 0"], ["conditional_on_crashing", "conditional on crashing"]].forEach(([key, which]) => {
+        const add = (what, value, i, p, holm) => rows.push([c.variant, `${what}, ${which}`, value, i, "", p, holm]);
+        const o = c.olc_change_g[key], v = c.closing_speed_change_m_s[key], km_h = n => fixed(3.6 * n, 1);
+        add("change of OLC, g (Hodges–Lehmann, signed rank)", one(o.hodges_lehmann), interval(o.hodges_lehmann_interval, one), pValue(o.signed_rank_p), pValue(o.signed_rank_p_holm));
+        add("mean change of OLC, g", one(o.mean), interval(o.mean_interval, one), "", "");
+        add("change of closing speed, km/h (Hodges–Lehmann, signed rank)", missing(v.hodges_lehmann) ? "–" : km_h(v.hodges_lehmann), interval(v.hodges_lehmann_interval, km_h), pValue(v.signed_rank_p), "");
+      });
+    });
+    // Pairs have no rates: no column of theirs.
+    const paired = slice().counterfactual.length > 0, without = list => paired ? list.filter((v, k) => k !== 4) : list;
     return {
-      caption: `OLC over ${scopeText()}.`,
-      columns: [{ name: "treatment", text: true }, { name: "treatment minus (over) baseline", text: true }, { name: "estimate" }, { name: "95 % bootstrap" }, { name: "95 % Poisson" }, { name: "p" }, { name: "p, Holm" }],
-      rows: rows
+      caption: paired ? "Within pairs, over all valid ones." : `OLC over ${scopeText()}.`,
+      columns: without([{ name: "treatment", text: true }, { name: "treatment minus (over) baseline", text: true }, { name: "estimate" }, { name: "95 % bootstrap" }, { name: "95 % Poisson" }, { name: "p" }, { name: "p, Holm" }]),
+      rows: rows.map(without)
     };
   });
 
@@ -813,8 +825,9 @@
       ...data.variants.map(v => [`Variant ${v.name}`, v.functions.map(f => `${f.function} (${parameters(f.parameters)})`).join("; ") || "no function"]),
       ["Observation", "the frontally struck vehicle; a crash with both fronts struck gives two, kept together with all crashes of their replication in every interval and test"]
     ]);
-    document.getElementById("note-contrasts").textContent = (study.design === "paired_seeds" ?
-      "p by sign flips of whole seed pairs" : "p by permutation of whole replications") +
+    document.getElementById("note-contrasts").textContent = study.design === "counterfactual" ?
+      "p by sign flips of whole replications; intervals by bootstrap over replications (BCa), given from 20 replications on. Hodges–Lehmann: the median of all means of two changes." :
+      (study.design === "paired_seeds" ? "p by sign flips of whole seed pairs" : "p by permutation of whole replications") +
       "; intervals by bootstrap over replications (BCa), given from 20 replications on, and for the rate ratio the interval that holds if counts are Poisson. Cliff’s δ is the chance that a vehicle of the treatment has the higher OLC minus the chance that it has the lower one.";
   }
 

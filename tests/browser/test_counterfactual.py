@@ -56,6 +56,15 @@ class Counterfactual(unittest.TestCase):
         self.assertEqual(shown, pairs)
         self.assertIn(f"{pairs} pairs, {less} less severe", lower)
 
+    def test_the_table_of_treatments_holds_the_changes(self):
+        self.browser.run("""const s = document.getElementById("scenario"); s.value = ""; s.dispatchEvent(new Event("change"));""")
+        mean = self.db.execute("""SELECT avg(treated_olc_g - baseline_olc_g) FROM counterfactual_pair WHERE variant = 'aeb'
+            AND baseline_crash_type LIKE 'front-%' AND outcome <> 'invalid' AND baseline_olc_g IS NOT NULL
+            AND treated_olc_g IS NOT NULL""").fetchone()[0]
+        shown = self.browser.run("""return Array.from(document.querySelectorAll("#table-contrasts tbody tr")).map(r => Array.from(r.children).map(c => c.textContent))
+            .find(r => r[0] === "aeb" && r[1] === "mean change of OLC, g, avoided = 0")[2]""")
+        self.assertEqual(shown.replace("\u2212", "-"), f"{mean:.1f}")
+
     def test_console_is_quiet_and_a_picture_is_left(self):
         self.assertEqual([e["message"] for e in self.browser.log("browser")], [])
         self.browser.run("document.getElementById('figure-flow').scrollIntoView()")

@@ -414,7 +414,7 @@ static bool print_table(FILE *file, const measurement *m, size_t count, size_t r
             "Made by `cmake --build build --target bench_volume_million`: crashes whose pulses are "
             "those of %zu distinct\nsurrogate runs, with noise of the sensor's resolution on each, "
             "in replications of %d crashes. Queries:\nprocessor time, in brackets on the wall, the "
-            "best of three; bars are for processor time at 10^6\ncrashes.\n\n",
+            "best of three; bars are for the time on the wall at\n10^6 crashes.\n\n",
             runs, CRASHES_A_REPLICATION);
     print_line(file, "crashes", m, count, crashes_of, "%.0f");
     fputs(" bar |\n|---|", file);
@@ -433,7 +433,7 @@ static bool print_table(FILE *file, const measurement *m, size_t count, size_t r
         fprintf(file, "| %s, s |", QUERY[k].what);
         for (size_t size = 0; size < count; size++)
             fprintf(file, " %.3f (%.3f) |", m[size].query[k].cpu_s, m[size].query[k].wall_s);
-        good &= print_bar(file, last, last->query[k].cpu_s, QUERY[k].bar_s, "s");
+        good &= print_bar(file, last, last->query[k].wall_s, QUERY[k].bar_s, "s");
     }
     fflush(file);
     return good;

@@ -126,6 +126,20 @@ static size_t write_header(size_t count, double interval_s, unsigned char header
     return used;
 }
 
+// One frame with a checksum of its content; a zstd error code where that fails.
+static size_t compress_checked(ZSTD_CCtx *context, void *room, size_t room_size, const void *bytes,
+                               size_t size)
+{
+    size_t result = ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, ZSTD_LEVEL);
+    if (!ZSTD_isError(result))
+        result = ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);
+    if (!ZSTD_isError(result))
+        result = ZSTD_CCtx_loadDictionary(context, cp_pulse_dictionary, cp_pulse_dictionary_size);
+    if (!ZSTD_isError(result))
+        result = ZSTD_compress2(context, room, room_size, bytes, size);
+    return result;
+}
+
 cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size, cp_error *error)
 {
     size_t count = pulse->sample_count;
@@ -159,9 +173,7 @@ cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size, cp_e
         goto done;
     }
     size_t header = write_header(count, pulse->sample_interval_s, packed);
-    size_t result =
-        ZSTD_compress_usingDict(context, packed + header, room, bytes, used, cp_pulse_dictionary,
-                                cp_pulse_dictionary_size, ZSTD_LEVEL);
+    size_t result = compress_checked(context, packed + header, room, bytes, used);
     if (ZSTD_isError(result)) {
         status = cp_fail(error, CP_STORE_FAILED, "pulse: zstd: %s", ZSTD_getErrorName(result));
         goto done;

@@ -15,7 +15,8 @@
  *
  * A blob of codec 2 explains itself: byte 0xc2, number of samples, sample interval in ns (0: its
  * eight bytes as IEEE double follow, lowest first), both as variable-length integers, then the zstd
- * frame, made with the dictionary db/pulse.zdict. Of codec 1 it is a frame alone, without one. */
+ * frame, made with the dictionary db/pulse.zdict and with zstd's checksum of its content (frames of
+ * before have none and are read as well). Of codec 1 it is a frame alone, without dictionary. */
 
 #define CP_PULSE_CODEC 2 /* what is written; both are read. Column pulse.codec */
 #define CP_PULSE_CODEC_INTERVAL_S 1e-3

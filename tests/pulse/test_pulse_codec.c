@@ -217,7 +217,10 @@ static void survives_hostile_blobs(void **state)
             cp_pulse_decode(CP_PULSE_CODEC, blob, shorter, count, 0.001, &back, &error),
             CP_BAD_INPUT);
 
-    // Any byte changed: either refused or decoded to some pulse.
+    // Any byte changed: refused, or the very pulse (a bit that says nothing); read as another
+    // codec, refused or some pulse.
+    cp_pulse whole;
+    assert_ok(cp_pulse_decode(CP_PULSE_CODEC, blob, size, count, 0.001, &whole, &error), &error);
     unsigned char *bytes = blob;
     for (size_t k = 0; k < size; k++) {
         for (unsigned flip = 1; flip < 256; flip = flip * 2 + 1) {
@@ -225,11 +228,16 @@ static void survives_hostile_blobs(void **state)
             for (int codec = 1; codec <= CP_PULSE_CODEC; codec++) {
                 cp_status status = cp_pulse_decode(codec, blob, size, count, 0.001, &back, &error);
                 assert_true(status == CP_OK || status == CP_BAD_INPUT);
+                for (int c = 0; codec == CP_PULSE_CODEC && status == CP_OK && c < CP_CHANNEL_COUNT;
+                     c++)
+                    assert_memory_equal(back.channel[c], whole.channel[c],
+                                        (size_t)count * sizeof(double));
                 cp_pulse_destroy(&back);
             }
             bytes[k] ^= (unsigned char)flip;
         }
     }
+    cp_pulse_destroy(&whole);
     free(blob);
     cp_pulse_destroy(&pulse);
 }

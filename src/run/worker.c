@@ -10,6 +10,7 @@
 #include "run/vehicle_types.h"
 #include "store/claim.h"
 #include "store/stored_crash.h"
+#include "study/scenario_files.h"
 
 // Claim with a connection of its own: none stays open while the replication runs.
 static cp_status claim(const char *db_path, const cp_replication_row *replication, int *attempt,
@@ -130,6 +131,8 @@ cp_status cp_worker_background(const char *path, const char *scenario, uint64_t 
         options.step_length_s = study.step_length_s;
         if (options.scenario == NULL)
             status = cp_fail(error, CP_BAD_INPUT, "%s: has no scenario '%s'", path, scenario);
+    } else {
+        status = cp_scenario_loads_no_state(path, error);
     }
     if (status == CP_OK)
         status = cp_background_run(&options, result_path, error);

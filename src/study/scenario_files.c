@@ -164,6 +164,34 @@ cp_status cp_scenario_files_json(const char *sumocfg_path, char **json, cp_error
     return status;
 }
 
+// ---- saved states --------------------------------------------------------------------------
+
+const char CP_SCENARIO_NO_STATE[] =
+    "must not begin with a saved state (load-state): SUMO does not put the traffic back as it was, "
+    "cars collide that otherwise do not; let it build up within warmup_s";
+
+cp_status cp_scenario_loads_no_state(const char *sumocfg_path, cp_error *error)
+{
+    static const char ELEMENT[] = "<load-state";
+    char *content = NULL;
+    size_t size = 0, length = 0;
+    cp_status status = cp_file_read(sumocfg_path, &content, &size, error);
+    if (status != CP_OK)
+        return status;
+    remove_comments(content);
+    for (const char *tag = strstr(content, ELEMENT); tag != NULL && status == CP_OK;
+         tag = strstr(tag + 1, ELEMENT)) {
+        const char *attributes = tag + sizeof ELEMENT - 1;
+        const char *end = strchr(tag, '>');
+        bool is_whole_name = isspace((unsigned char)*attributes); // not load-state.offset
+        if (end != NULL && is_whole_name &&
+            find_attribute(attributes, end, "value", "v", &length) != NULL && length > 0)
+            status = cp_fail(error, CP_BAD_INPUT, "%s: %s", sumocfg_path, CP_SCENARIO_NO_STATE);
+    }
+    free(content);
+    return status;
+}
+
 // ---- vehicle models named by types ---------------------------------------------------------
 
 typedef struct model_search {

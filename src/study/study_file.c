@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "core/yaml_file.h"
 #include "study/control_section.h"
+#include "study/scenario_files.h"
 #include "study/study_parts.h"
 #include "study/sweep_section.h"
 
@@ -366,7 +367,15 @@ static cp_status take_controls(const cp_yaml_file *file, cp_control_kind kind,
     return CP_OK;
 }
 
-static cp_status take_words(const raw_scenario *raw, cp_study_scenario *scenario, cp_error *error)
+static bool is_load_state(const char *word)
+{
+    static const char OPTION[] = "--load-state";
+    size_t length = sizeof OPTION - 1;
+    return strncmp(word, OPTION, length) == 0 && (word[length] == '\0' || word[length] == '=');
+}
+
+static cp_status take_words(const cp_yaml_file *file, const char *path, const raw_scenario *raw,
+                            cp_study_scenario *scenario, cp_error *error)
 {
     if (raw->sumo_options_count == 0)
         return CP_OK;
@@ -374,6 +383,8 @@ static cp_status take_words(const raw_scenario *raw, cp_study_scenario *scenario
     if (scenario->sumo_options == NULL)
         return cp_fail_memory(error, "sumo_options");
     for (size_t k = 0; k < raw->sumo_options_count; k++) {
+        if (is_load_state(raw->sumo_options[k]))
+            return cp_yaml_fail(file, error, path, "%s", CP_SCENARIO_NO_STATE);
         scenario->sumo_options[k] = strdup(raw->sumo_options[k]);
         if (scenario->sumo_options[k] == NULL)
             return cp_fail_memory(error, "sumo_options");
@@ -407,7 +418,10 @@ static cp_status take_scenario(const cp_yaml_file *file, const raw_scenario *raw
             status = cp_fail_memory(error, path);
     }
     if (status == CP_OK)
-        status = take_words(raw, scenario, error);
+        status = cp_scenario_loads_no_state(scenario->sumocfg_path, error);
+    snprintf(path, sizeof path, "scenarios[%zu].sumo_options", index);
+    if (status == CP_OK)
+        status = take_words(file, path, raw, scenario, error);
     snprintf(path, sizeof path, "scenarios[%zu].driver_errors", index);
     if (status == CP_OK)
         status = take_controls(file, CP_CONTROL_DRIVER_ERROR, path, "model", raw->driver_errors,

@@ -93,3 +93,7 @@ with tempfile.TemporaryDirectory() as name:
     assert "none.sumocfg" in message, message
     message = run("background", configuration, "--db", database, expect=2).stderr
     assert "--db is for the scenarios of a study" in message, message
+    state = folder / "net/state.sumocfg"
+    state.write_text(configuration.read_text().replace("<input>", '<input><load-state value="s.xml"/>'))
+    message = run("background", state, expect=2).stderr
+    assert "state.sumocfg: must not begin with a saved state" in message, message

@@ -130,6 +130,9 @@ static const struct {
     {"design: paired_seeds", "design: counterfactual\nbaseline: aeb",
      "variants[1].functions must be empty: the baseline of a counterfactual study drives without "
      "functions, found 1"},
+    {"[--scale, \"0.5\"]", "[--load-state, state.xml]",
+     "study.yaml:11: scenarios[0].sumo_options must not begin with a saved state (load-state)"},
+    {"[--scale, \"0.5\"]", "[--load-state=state.xml]", "scenarios[0].sumo_options must not begin"},
     // Structure: libcyaml's part.
     {"warmup_s: 60", "warmup: 60", "study.yaml:7: Unexpected key: warmup"},
     {"seed: 20261122\n", "", "Missing required mapping field: seed"},
@@ -186,6 +189,30 @@ static void bad_studies_are_told_by_line(void **state)
     }
 }
 
+static void no_scenario_begins_with_a_saved_state(void **state)
+{
+    static const struct {
+        const char *sumocfg;
+        cp_status status;
+    } CASES[] = {
+        {"<input><load-state value=\"s.xml.gz\"/></input>", CP_BAD_INPUT},
+        {"<input>\n<load-state\n v='s.xml.gz'></load-state></input>", CP_BAD_INPUT},
+        {"<input><load-state value=\"\"/></input>", CP_OK},
+        {"<input><!-- <load-state value=\"s.xml.gz\"/> --></input>", CP_OK},
+        {"<input><load-state.offset value=\"60\"/></input>", CP_OK},
+    };
+    const fixture *f = *state;
+    for (size_t k = 0; k < sizeof CASES / sizeof CASES[0]; k++) {
+        cp_study study;
+        cp_error error = {0};
+        write_text(f, "a.sumocfg", CASES[k].sumocfg);
+        assert_int_equal(cp_study_load(f->study, &study, &error), CASES[k].status);
+        if (CASES[k].status != CP_OK)
+            assert_non_null(strstr(error.text, "a.sumocfg: must not begin with a saved state"));
+        cp_study_destroy(&study);
+    }
+}
+
 static void missing_and_empty_files(void **state)
 {
     const fixture *f = *state;
@@ -207,6 +234,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(counterfactual_section_and_equipment, fixture_begin,
                                         fixture_end),
         cmocka_unit_test_setup_teardown(bad_studies_are_told_by_line, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(no_scenario_begins_with_a_saved_state, fixture_begin,
+                                        fixture_end),
         cmocka_unit_test_setup_teardown(missing_and_empty_files, fixture_begin, fixture_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

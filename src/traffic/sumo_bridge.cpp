@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <malloc.h>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -246,12 +247,12 @@ void start(const char *sumocfg, uint64_t seed, double step_length_s, const char 
     size_t streams = 64;
     auto words = command(sumocfg, seed, step_length_s, options, option_count, streams);
     libsumo::Simulation::start(words);
-    size_t lanes = static_cast<size_t>(libsumo::Lane::getIDCount());
+    const size_t lanes = static_cast<size_t>(libsumo::Lane::getIDCount());
     if (lanes > streams) {
-        while (streams < lanes)
-            streams *= 2;
+        streams = lanes; // not more: each is 5 kB
         words = command(sumocfg, seed, step_length_s, options, option_count, streams);
         close_quietly();
+        malloc_trim(0); // else the second network lies around holes of the first: 2 MB of a town
         libsumo::Simulation::start(words);
     }
     for (const std::string &word : words)

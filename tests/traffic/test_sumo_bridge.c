@@ -257,6 +257,35 @@ static void commanded_braking_is_exact(void **unused)
     sumo_bridge_stop();
 }
 
+// Lanes of a network file.
+static unsigned lanes_of(const char *path)
+{
+    char line[4096];
+    unsigned lanes = 0;
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file) != NULL)
+        lanes += strstr(line, "<lane ") != NULL;
+    fclose(file);
+    return lanes;
+}
+
+static void every_lane_has_random_numbers_of_its_own(void **unused)
+{
+    (void)unused;
+    char path[1024], net[1024], words[64];
+    cp_error error = {0};
+    snprintf(path, sizeof path, "%s/sumo_scenarios/town/town.sumocfg", getenv("CRASHPULSE_SOURCE"));
+    snprintf(net, sizeof net, "%s/sumo_scenarios/town/town.net.xml", getenv("CRASHPULSE_SOURCE"));
+    unsigned lanes = lanes_of(net);
+    assert_true(lanes > 64);
+    if (sumo_bridge_start(path, 1, 0.1, NULL, 0, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    snprintf(words, sizeof words, " --thread-rngs %u ", lanes);
+    assert_non_null(strstr(sumo_bridge_command_line(), words));
+    sumo_bridge_stop();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -267,6 +296,7 @@ int main(void)
         cmocka_unit_test(the_same_seed_gives_the_same_traffic),
         cmocka_unit_test(a_removed_vehicle_is_gone),
         cmocka_unit_test(commanded_braking_is_exact),
+        cmocka_unit_test(every_lane_has_random_numbers_of_its_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define TURNING_RAD_S 0.1
-#define STRAIGHTENED_LATER_S 0.5 /* a straightened way may lead there this much later */
+#define OTHERWISE_LATER_S 0.5 /* driving otherwise, they may meet this much later */
 #define BISECTIONS 40
 
 cp_target_class cp_target_class_of(const cp_moving_rectangle *own,
@@ -185,10 +185,48 @@ static cp_moving_rectangle straightened(cp_moving_rectangle moving)
     return moving;
 }
 
-// Conditions 1 to 4 for two vehicles at one moment; *ttc_s is set when they hold.
-static bool is_threat(const cp_lookout_settings *settings, const cp_moving_rectangle *own,
-                      const cp_moving_rectangle *target, double *ttc_s)
+// As if it had braked evenly from now: on the same path, as far in time_s as it comes braking.
+static cp_moving_rectangle braking(cp_moving_rectangle moving, double deceleration_m_s2,
+                                   double time_s)
 {
+    double speed_m_s = cp_vec2_length(moving.velocity_m_s);
+    if (!(deceleration_m_s2 > 0.0 && speed_m_s > 0.0 && time_s > 0.0))
+        return moving;
+    double until_s = fmin(time_s, speed_m_s / deceleration_m_s2);
+    double way_m = until_s * (speed_m_s - 0.5 * deceleration_m_s2 * until_s);
+    double share_1 = way_m / (speed_m_s * time_s);
+    moving.velocity_m_s = cp_vec2_scale(moving.velocity_m_s, share_1);
+    moving.yaw_rate_rad_s *= share_1;
+    return moving;
+}
+
+/* Two vehicles at one moment. */
+typedef struct cp_encounter {
+    cp_moving_rectangle own;
+    cp_moving_rectangle target;
+    double target_braking_m_s2; /* < 0: it gains speed */
+} cp_encounter;
+
+// Conditions 4 and 5 for two that meet in ttc_s as they go now.
+static bool meet_otherwise(const cp_encounter *pair, cp_target_class class, double ttc_s,
+                           double later_s)
+{
+    cp_moving_rectangle own_straight = straightened(pair->own);
+    cp_moving_rectangle target_straight = straightened(pair->target);
+    bool may_straighten = class == CP_TARGET_TURNING || ttc_s > CP_LOOKOUT_TURN_HOLDS_S;
+    if (may_straighten && (cp_ttc_s(&own_straight, &pair->target, later_s) == INFINITY ||
+                           cp_ttc_s(&pair->own, &target_straight, later_s) == INFINITY))
+        return false;
+    if (class == CP_TARGET_REAR_END)
+        return true;
+    cp_moving_rectangle slower = braking(pair->target, pair->target_braking_m_s2, ttc_s);
+    return cp_ttc_s(&pair->own, &slower, later_s) < INFINITY;
+}
+
+// Conditions 1 to 5 for two vehicles at one moment; *ttc_s is set when they hold.
+static bool is_threat(const cp_lookout_settings *settings, const cp_encounter *pair, double *ttc_s)
+{
+    const cp_moving_rectangle *own = &pair->own, *target = &pair->target;
     cp_target_class class = cp_target_class_of(own, target);
     if (!settings->has_class[class])
         return false;
@@ -202,22 +240,16 @@ static bool is_threat(const cp_lookout_settings *settings, const cp_moving_recta
         speed_m_s -= cp_vec2_dot(target->velocity_m_s, axis);
     if (speed_m_s < 2.0 * *ttc_s * settings->required_m_s2)
         return false;
-
-    if (class != CP_TARGET_TURNING)
-        return true;
-    double later_s = settings->ttc_s + STRAIGHTENED_LATER_S;
-    cp_moving_rectangle own_straight = straightened(*own);
-    cp_moving_rectangle target_straight = straightened(*target);
-    return cp_ttc_s(&own_straight, target, later_s) < INFINITY &&
-           cp_ttc_s(own, &target_straight, later_s) < INFINITY;
+    return meet_otherwise(pair, class, *ttc_s, settings->ttc_s + OTHERWISE_LATER_S);
 }
 
 static bool is_threat_inside(const cp_lookout_settings *settings, const cp_vehicle_motion *own,
                              const cp_vehicle_motion *target, double fraction, double *ttc_s)
 {
-    cp_moving_rectangle one = cp_moving_rectangle_inside(own, fraction);
-    cp_moving_rectangle other = cp_moving_rectangle_inside(target, fraction);
-    return is_threat(settings, &one, &other, ttc_s);
+    cp_encounter pair = {.own = cp_moving_rectangle_inside(own, fraction),
+                         .target = cp_moving_rectangle_inside(target, fraction),
+                         .target_braking_m_s2 = -target->after.acceleration_m_s2};
+    return is_threat(settings, &pair, ttc_s);
 }
 
 // Fraction of the step at which it became a threat, which it is at the end: 0 if it was already at

@@ -19,13 +19,16 @@ static cp_lookout_settings plain(void)
                                  .key = cp_rng_key_seed(3)};
 }
 
-/* Step the cars on the road until car 0 has a threat; false after 5 s without. */
-static bool find_threat(cp_traffic *traffic, const cp_lookout_settings *settings, cp_threat *threat)
+/* Step the cars on the road, drive before each step, until car 0 has a threat; false after 5 s
+ * without. */
+static bool find_threat_driving(cp_traffic *traffic, const cp_lookout_settings *settings,
+                                void (*drive)(void), cp_threat *threat)
 {
     cp_lookout lookout = cp_lookout_create(settings, traffic);
     cp_error error = {0};
     bool found = false;
     while (!found && road.time_s < 5.0) {
+        drive();
         assert_int_equal(cp_traffic_step(traffic, &error), CP_OK);
         assert_int_equal(cp_lookout_step(&lookout, &error), CP_OK);
         const cp_vehicle_motion *own = cp_traffic_motion_of(traffic, 0);
@@ -34,6 +37,15 @@ static bool find_threat(cp_traffic *traffic, const cp_lookout_settings *settings
     }
     cp_lookout_destroy(&lookout);
     return found;
+}
+
+static void drive_on(void)
+{
+}
+
+static bool find_threat(cp_traffic *traffic, const cp_lookout_settings *settings, cp_threat *threat)
+{
+    return find_threat_driving(traffic, settings, drive_on, threat);
 }
 
 static void the_instant_lies_inside_the_step(void **unused)
@@ -138,6 +150,64 @@ static void cars_waiting_beside_a_turn_are_no_threat(void **unused)
     cp_traffic_destroy(traffic);
 }
 
+static void brake(road_car *car, double deceleration_m_s2)
+{
+    if (road.time_s > 0.0)
+        car->command_m_s = fmax(0.0, car->state.speed_m_s - deceleration_m_s2 * road.step_s);
+}
+
+static void brake_to_a_stop(void)
+{
+    brake(&road.cars[1], 3.0);
+}
+
+static void brake_a_little(void)
+{
+    brake(&road.cars[1], 0.5);
+}
+
+static void a_car_that_stops_beside_the_way_is_no_threat(void **unused)
+{
+    (void)unused;
+    // From the other direction, about to turn across the own way: it comes to rest 0.4 m short of
+    // it, or goes on into it.
+    for (int stops = 0; stops < 2; stops++) {
+        cp_lookout_settings settings = plain();
+        cp_threat threat;
+        cp_traffic *traffic = road_open(0.05);
+        road_add("own", 0.0, 0.0, 0.0, 20.0);
+        road_add("turning", 40.0, 2.7, -2.57, 2.5);
+        assert_int_equal(find_threat_driving(traffic, &settings,
+                                             stops ? brake_to_a_stop : brake_a_little, &threat),
+                         !stops);
+        cp_traffic_destroy(traffic);
+    }
+}
+
+// To the left and straight again.
+static void move_within_the_lane(void)
+{
+    double time_s = road.time_s;
+    road.cars[1].curvature_1_m = time_s < 0.4 ? 0.002 : time_s < 0.8 ? -0.002 : 0.0;
+}
+
+static void moving_a_little_within_the_lane_is_no_threat(void **unused)
+{
+    (void)unused;
+    // An oncoming car with 1.3 m of air between, and one that comes over.
+    for (int comes_over = 0; comes_over < 2; comes_over++) {
+        cp_lookout_settings settings = plain();
+        settings.ttc_s = 2.4;
+        cp_threat threat;
+        cp_traffic *traffic = road_open(0.05);
+        road_add("own", 0.0, 0.0, 0.0, 18.0);
+        road_add("oncoming", 84.0, 3.1, CP_PI + 0.06 * comes_over, 22.0);
+        assert_int_equal(find_threat_driving(traffic, &settings, move_within_the_lane, &threat),
+                         comes_over);
+        cp_traffic_destroy(traffic);
+    }
+}
+
 static void what_is_hidden_is_not_known(void **unused)
 {
     (void)unused;
@@ -187,6 +257,8 @@ int main(void)
         cmocka_unit_test(confirmation_takes_its_time),
         cmocka_unit_test(classes_are_switched_one_by_one),
         cmocka_unit_test(cars_waiting_beside_a_turn_are_no_threat),
+        cmocka_unit_test(a_car_that_stops_beside_the_way_is_no_threat),
+        cmocka_unit_test(moving_a_little_within_the_lane_is_no_threat),
         cmocka_unit_test(what_is_hidden_is_not_known),
         cmocka_unit_test(some_targets_are_never_detected),
     };

@@ -65,7 +65,7 @@ typedef struct kernel_entry {
 } kernel_entry;
 
 // The open descriptors by the kernel's own listing: opendir would allocate.
-static bool isolate_listed(int listing, int keep, int nowhere)
+static bool isolate_listed(int listing, int keep, int also, int nowhere)
 {
     _Alignas(kernel_entry) char entries[4096];
     long size;
@@ -76,18 +76,19 @@ static bool isolate_listed(int listing, int keep, int nowhere)
             if (entry->name[0] == '.')
                 continue;
             int fd = (int)strtol(entry->name, NULL, 10);
-            if (fd != keep && fd != nowhere && fd != listing && !isolate_one(fd, nowhere))
+            if (fd != keep && fd != also && fd != nowhere && fd != listing &&
+                !isolate_one(fd, nowhere))
                 return false;
         }
     }
     return size == 0;
 }
 
-bool cp_branch_isolate(int keep)
+bool cp_branch_isolate(int keep, int also)
 {
     int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
     int listing = open("/proc/self/fd", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    bool done = nowhere >= 0 && listing >= 0 && isolate_listed(listing, keep, nowhere);
+    bool done = nowhere >= 0 && listing >= 0 && isolate_listed(listing, keep, also, nowhere);
     if (listing >= 0)
         close(listing);
     if (nowhere >= 0)

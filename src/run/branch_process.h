@@ -13,10 +13,10 @@
  * signals at their defaults, none blocked; no core file. False when that cannot be had. */
 bool cp_branch_follow(pid_t parent);
 
-/* Cut off every descriptor but keep: writable files, pipes and sockets lead to /dev/null, files
- * open for reading are opened anew at the same place, since the place in a file is shared by a
- * process and its copies. False when /proc is not there. */
-bool cp_branch_isolate(int keep);
+/* Cut off every descriptor but keep and also (-1: no other): writable files, pipes and sockets lead
+ * to /dev/null, files open for reading are opened anew at the same place, since the place in a file
+ * is shared by a process and its copies. False when /proc is not there. */
+bool cp_branch_isolate(int keep, int also);
 
 /* End this process after that much processor time or wall time, s. */
 bool cp_branch_limit(unsigned cpu_s, unsigned wall_s);

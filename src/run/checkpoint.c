@@ -26,14 +26,18 @@ typedef struct frozen {
 
 struct cp_checkpoints {
     cp_checkpoint_options options;
-    frozen *slots; /* options.kept of them */
-    char *request; /* options.request_max bytes, in a checkpoint */
+    double *times; /* of the last options.kept checkpoints, number n at n % options.kept */
+    size_t taken;  /* so far */
+    frozen *slots; /* copies */
+    size_t slot_count;
+    char *request; /* options.request_max bytes, in a copy */
     char *arena;   /* answers, one behind the other */
     size_t arena_used;
 };
 
 /* What goes before a request and before an answer. */
 typedef struct request_head {
+    double time_s; /* of the checkpoint */
     size_t branches;
     size_t size;
 } request_head;
@@ -46,16 +50,16 @@ typedef struct answer_head {
 cp_checkpoint_options cp_checkpoint_options_default(void)
 {
     return (cp_checkpoint_options){
-        .kept = 20, .cpu_s = 120, .wall_s = 1200, .request_max = (size_t)64 << 10};
+        .kept = 20, .every = 1, .cpu_s = 120, .wall_s = 1200, .request_max = (size_t)64 << 10};
 }
 
-// ---- in a checkpoint: forking branches -----------------------------------------------------
+// ---- in a copy and its guides: forking branches --------------------------------------------
 
-static _Noreturn void run_branch(const cp_checkpoints *self, pid_t checkpoint, size_t number,
+static _Noreturn void run_branch(const cp_checkpoints *self, pid_t parent, size_t number,
                                  size_t size, int answer)
 {
     const cp_checkpoint_options *options = &self->options;
-    if (!cp_branch_follow(checkpoint) || !cp_branch_isolate(answer) ||
+    if (!cp_branch_follow(parent) || !cp_branch_isolate(answer, -1) ||
         !cp_branch_limit(options->cpu_s, options->wall_s))
         _exit(1);
     _exit(options->branch(options->context, number, self->request, size, answer) == 0 ? 0 : 1);
@@ -97,17 +101,68 @@ static bool serve_branch(const cp_checkpoints *self, size_t number, size_t size,
            cp_branch_write(channel, self->arena + self->arena_used, head.size);
 }
 
-// A checkpoint's life: tell that it is ready, then serve until nobody is left to ask.
-static _Noreturn void be_frozen(const cp_checkpoints *self, pid_t worker, int channel)
+static bool serve_branches(const cp_checkpoints *self, const request_head *head, int channel)
+{
+    bool alive = true;
+    for (size_t k = 0; alive && k < head->branches; k++)
+        alive = serve_branch(self, k, head->size, channel);
+    return alive;
+}
+
+// A guide's life: on to the checkpoint, tell that it is there, then serve.
+static _Noreturn void guide(const cp_checkpoints *self, pid_t copy, const request_head *head,
+                            int channel, int arrival)
+{
+    const cp_checkpoint_options *options = &self->options;
+    char arrived = 1;
+    if (!cp_branch_follow(copy) || !cp_branch_isolate(channel, arrival) ||
+        !cp_branch_limit(options->cpu_s, options->wall_s) ||
+        options->advance(options->context, head->time_s) != 0 ||
+        !cp_branch_write(arrival, &arrived, 1))
+        _exit(1);
+    close(arrival);
+    alarm(0); // each branch has its own
+    _exit(serve_branches(self, head, channel) ? 0 : 1);
+}
+
+// By a guide. One that does not arrive has an answer for each branch that says so; what ends it
+// later may have cut an answer short, and nothing can be said any more.
+static bool serve_guided(const cp_checkpoints *self, const request_head *head, int channel)
+{
+    int ends[2];
+    char arrived = 0;
+    answer_head lost = {.wait_status = -1};
+    pid_t self_pid = getpid();
+    if (pipe(ends) != 0)
+        return false;
+    pid_t pid = fork();
+    if (pid == 0)
+        guide(self, self_pid, head, channel, ends[1]);
+    close(ends[1]);
+    bool alive = cp_branch_read(ends[0], &arrived, 1);
+    close(ends[0]);
+    while (pid > 0 && waitpid(pid, &lost.wait_status, 0) < 0 && errno == EINTR)
+        continue;
+    if (alive)
+        return lost.wait_status == 0;
+    alive = true;
+    for (size_t k = 0; alive && k < head->branches; k++)
+        alive = cp_branch_write(channel, &lost, sizeof lost);
+    return alive;
+}
+
+// A copy's life: tell that it is ready, then serve until nobody is left to ask.
+static _Noreturn void be_frozen(const cp_checkpoints *self, pid_t worker, double time_s,
+                                int channel)
 {
     char ready = 1;
     request_head head;
-    bool alive = cp_branch_follow(worker) && cp_branch_isolate(channel) &&
+    bool alive = cp_branch_follow(worker) && cp_branch_isolate(channel, -1) &&
                  cp_branch_write(channel, &ready, 1);
     while (alive && cp_branch_read(channel, &head, sizeof head) &&
            cp_branch_read(channel, self->request, head.size))
-        for (size_t k = 0; alive && k < head.branches; k++)
-            alive = serve_branch(self, k, head.size, channel);
+        alive = head.time_s == time_s ? serve_branches(self, &head, channel)
+                                      : serve_guided(self, &head, channel);
     _exit(0);
 }
 
@@ -128,12 +183,13 @@ void cp_checkpoints_destroy(cp_checkpoints *self)
 {
     if (self == NULL)
         return;
-    for (size_t k = 0; self->slots != NULL && k < self->options.kept; k++)
+    for (size_t k = 0; self->slots != NULL && k < self->slot_count; k++)
         end_frozen(&self->slots[k]);
     if (self->arena != NULL)
         munmap(self->arena, ARENA_BYTES);
     free(self->request);
     free(self->slots);
+    free(self->times);
     free(self);
 }
 
@@ -145,12 +201,16 @@ cp_status cp_checkpoints_create(const cp_checkpoint_options *options, cp_checkpo
     if (self == NULL)
         return cp_fail_memory(error, "checkpoints");
     self->options = *options;
-    self->slots = calloc(options->kept, sizeof *self->slots);
+    // As many copies as the way back to the oldest checkpoint and on to a copy before it can have.
+    self->slot_count = (options->kept + options->every - 2) / options->every + 1;
+    self->slots = calloc(self->slot_count, sizeof *self->slots);
+    self->times = calloc(options->kept, sizeof *self->times);
     self->request = calloc(1, options->request_max);
     void *arena = mmap(NULL, ARENA_BYTES, PROT_READ | PROT_WRITE,
                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     self->arena = arena != MAP_FAILED ? arena : NULL;
-    if (self->slots == NULL || self->request == NULL || self->arena == NULL) {
+    if (self->slots == NULL || self->times == NULL || self->request == NULL ||
+        self->arena == NULL) {
         cp_checkpoints_destroy(self);
         return cp_fail_memory(error, "checkpoints");
     }
@@ -162,7 +222,7 @@ cp_status cp_checkpoints_create(const cp_checkpoint_options *options, cp_checkpo
 static frozen *free_slot(cp_checkpoints *self)
 {
     frozen *oldest = &self->slots[0];
-    for (size_t k = 0; k < self->options.kept; k++) {
+    for (size_t k = 0; k < self->slot_count; k++) {
         frozen *slot = &self->slots[k];
         if (slot->pid == 0)
             return slot;
@@ -173,7 +233,7 @@ static frozen *free_slot(cp_checkpoints *self)
     return oldest;
 }
 
-cp_status cp_checkpoints_take(cp_checkpoints *self, double time_s, cp_error *error)
+static cp_status freeze(cp_checkpoints *self, double time_s, cp_error *error)
 {
     int ends[2];
     char ready = 0;
@@ -183,7 +243,7 @@ cp_status cp_checkpoints_take(cp_checkpoints *self, double time_s, cp_error *err
         return cp_fail(error, CP_RUN_FAILED, "checkpoint at %.2f s: %s", time_s, strerror(errno));
     pid_t pid = fork();
     if (pid == 0)
-        be_frozen(self, worker, ends[1]);
+        be_frozen(self, worker, time_s, ends[1]);
     int failed = pid < 0 ? errno : 0;
     close(ends[1]);
     if (failed == 0) {
@@ -198,17 +258,37 @@ cp_status cp_checkpoints_take(cp_checkpoints *self, double time_s, cp_error *err
     return cp_fail(error, CP_RUN_FAILED, "checkpoint at %.2f s: %s", time_s, strerror(failed));
 }
 
-bool cp_checkpoints_find(const cp_checkpoints *self, double latest_s, double *time_s)
+cp_status cp_checkpoints_take(cp_checkpoints *self, double time_s, cp_error *error)
 {
-    bool found = false;
-    for (size_t k = 0; k < self->options.kept; k++) {
-        const frozen *slot = &self->slots[k];
-        if (slot->pid == 0 || slot->time_s > latest_s || (found && slot->time_s <= *time_s))
-            continue;
-        *time_s = slot->time_s;
-        found = true;
+    size_t number = self->taken++;
+    self->times[number % self->options.kept] = time_s;
+    return number % self->options.every == 0 ? freeze(self, time_s, error) : CP_OK;
+}
+
+// The youngest copy that is not younger; NULL when there is none.
+static frozen *copy_before(const cp_checkpoints *self, double time_s)
+{
+    frozen *found = NULL;
+    for (size_t k = 0; k < self->slot_count; k++) {
+        frozen *slot = &self->slots[k];
+        if (slot->pid != 0 && slot->time_s <= time_s &&
+            (found == NULL || slot->time_s > found->time_s))
+            found = slot;
     }
     return found;
+}
+
+bool cp_checkpoints_find(const cp_checkpoints *self, double latest_s, double *time_s)
+{
+    size_t known = self->taken < self->options.kept ? self->taken : self->options.kept;
+    for (size_t k = 1; k <= known; k++) {
+        double found_s = self->times[(self->taken - k) % self->options.kept];
+        if (found_s > latest_s)
+            continue;
+        *time_s = found_s;
+        return copy_before(self, found_s) != NULL;
+    }
+    return false;
 }
 
 static void explain(int wait_status, cp_branch_end *end)
@@ -246,13 +326,12 @@ static bool take_answer(cp_checkpoints *self, int channel, cp_branch_end *end)
 bool cp_checkpoints_branch(cp_checkpoints *self, double time_s, const void *request, size_t size,
                            size_t count, cp_branch_end *ends)
 {
-    frozen *slot = NULL;
-    for (size_t k = 0; k < self->options.kept; k++)
-        if (self->slots[k].pid != 0 && self->slots[k].time_s == time_s)
-            slot = &self->slots[k];
-    if (slot == NULL || size > self->options.request_max)
+    double found_s;
+    if (!cp_checkpoints_find(self, time_s, &found_s) || found_s != time_s ||
+        size > self->options.request_max)
         return false;
-    request_head head = {.branches = count, .size = size};
+    frozen *slot = copy_before(self, time_s);
+    request_head head = {.time_s = time_s, .branches = count, .size = size};
     bool alive = cp_branch_write(slot->channel, &head, sizeof head) &&
                  cp_branch_write(slot->channel, request, size);
     for (size_t k = 0; alive && k < count; k++)

@@ -3,6 +3,7 @@
 #include "run/runner.h"
 #include "store/query.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,24 +13,40 @@
 /* What a counterfactual costs against re-running the replication it belongs to. The same traffic
  * three times: without pairs, with one treatment, with five. The difference of the last two is what
  * four more branches a crash cost; what the second costs more than the first is the checkpoints,
- * the null treatment and one treatment. Last, what a branch costs with its share of the
- * checkpoints. Processor time of the workers with all their checkpoints and branches, so that other
- * work on the machine does not count. */
+ * the null treatment and one treatment. Last, all that pairs cost, shared among the branches.
+ * Processor time of the workers with all their checkpoints and branches, so that other work on the
+ * machine does not count. Names of scenarios choose some of them. */
 
 static const char HEAD[] = "study: bench\n"
                            "design: %s\n"
                            "seed: 20261124\n"
                            "replications: 1\n"
-                           "duration_s: 900\n"
+                           "duration_s: %d\n"
                            "vehicles: {default: %s/db/vehicles/honda_accord_2014.yaml}\n"
                            "scenarios:\n"
                            "  - name: traffic\n"
                            "    sumocfg: %s/sumo_scenarios/%s/%s.sumocfg\n"
                            "    driver_errors:\n"
-                           "      - model: %s\n"
-                           "        parameters: {%s}\n"
+                           "%s"
                            "variants:\n"
                            "  - name: baseline\n";
+
+typedef struct traffic {
+    const char *scenario;
+    int duration_s;
+    const char *errors;
+} traffic;
+
+static const traffic TRAFFIC[] = {
+    {"left_turn", 900, "      - {model: failed_to_see, parameters: {probability_1: 0.3}}\n"},
+    {"head_on_overtaking", 900,
+     "      - {model: risky_overtaking, parameters: {probability_1: 0.5}}\n"},
+    {"town", 450,
+     "      - {model: failed_to_see, parameters: {probability_1: 0.02}}\n"
+     "      - {model: misjudged_gap, parameters: {probability_1: 0.02}}\n"
+     "      - {model: late_braking, parameters: {rate_per_h: 10}}\n"},
+};
+
 typedef struct outcome {
     double cpu_s;
     double crashes;
@@ -62,8 +79,7 @@ static double children_cpu_s(void)
 }
 
 // One replication of a scenario in a folder of its own.
-static outcome run(const char *source, const char *worker, const char *const scenario[3],
-                   int treatments)
+static outcome run(const char *source, const char *worker, const traffic *what, int treatments)
 {
     char folder[] = "/tmp/crashpulse-bench-XXXXXX", study[64], db[64], text[4096], command[128];
     cp_runner_summary summary;
@@ -72,8 +88,9 @@ static outcome run(const char *source, const char *worker, const char *const sce
         exit(1);
     snprintf(study, sizeof study, "%s/study.yaml", folder);
     snprintf(db, sizeof db, "%s/study.db", folder);
-    int used = snprintf(text, sizeof text, HEAD, treatments > 0 ? "counterfactual" : "paired_seeds",
-                        source, source, scenario[0], scenario[0], scenario[1], scenario[2]);
+    int used =
+        snprintf(text, sizeof text, HEAD, treatments > 0 ? "counterfactual" : "paired_seeds",
+                 what->duration_s, source, source, what->scenario, what->scenario, what->errors);
     for (int k = 0; k < treatments; k++)
         used += snprintf(text + used, sizeof text - (size_t)used,
                          "  - {name: aeb%d, functions: [{function: aeb}]}\n", k);
@@ -97,27 +114,38 @@ static outcome run(const char *source, const char *worker, const char *const sce
     return system(command) == 0 ? found : (outcome){0};
 }
 
+static bool is_wanted(const char *scenario, int count, char **names)
+{
+    for (int k = 0; k < count; k++)
+        if (strcmp(names[k], scenario) == 0)
+            return true;
+    return count == 0;
+}
+
 int main(int argc, char **argv)
 {
-    static const char *const SCENARIOS[][3] = {
-        {"left_turn", "failed_to_see", "probability_1: 0.3"},
-        {"head_on_overtaking", "risky_overtaking", "probability_1: 0.5"}};
-    if (argc != 3) {
-        fprintf(stderr, "bench_counterfactual SOURCE_FOLDER WORKER\n");
+    if (argc < 3) {
+        fprintf(stderr, "bench_counterfactual SOURCE_FOLDER WORKER [SCENARIO...]\n");
         return 2;
     }
-    for (size_t k = 0; k < sizeof SCENARIOS / sizeof *SCENARIOS; k++) {
-        outcome plain = run(argv[1], argv[2], SCENARIOS[k], 0);
-        outcome one = run(argv[1], argv[2], SCENARIOS[k], 1);
-        outcome five = run(argv[1], argv[2], SCENARIOS[k], 5);
+    for (size_t k = 0; k < sizeof TRAFFIC / sizeof *TRAFFIC; k++) {
+        const traffic *what = &TRAFFIC[k];
+        if (!is_wanted(what->scenario, argc - 3, argv + 3))
+            continue;
+        outcome plain = run(argv[1], argv[2], what, 0);
+        outcome one = run(argv[1], argv[2], what, 1);
+        outcome five = run(argv[1], argv[2], what, 5);
         double branch_s = (five.cpu_s - one.cpu_s) / (five.branches - one.branches);
         printf("%s: replication %.2f s of processor time, %.0f crashes\n"
                "  a counterfactual: %.1f %% of re-running the replication (bar: 5 %%)\n"
                "  checkpoints: %.0f %% of the replication, whatever the number of branches\n"
+               "  both, for each of the %.0f branches of one treatment: %.1f %%\n"
                "  both, for each of the %.0f branches of five treatments: %.1f %%\n",
-               SCENARIOS[k][0], plain.cpu_s, plain.crashes, 100.0 * branch_s / plain.cpu_s,
+               what->scenario, plain.cpu_s, plain.crashes, 100.0 * branch_s / plain.cpu_s,
                100.0 * (one.cpu_s - plain.cpu_s - branch_s * one.branches) / plain.cpu_s,
+               one.branches, 100.0 * (one.cpu_s - plain.cpu_s) / plain.cpu_s / one.branches,
                five.branches, 100.0 * (five.cpu_s - plain.cpu_s) / plain.cpu_s / five.branches);
+        fflush(stdout);
     }
     return 0;
 }

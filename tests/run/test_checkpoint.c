@@ -24,6 +24,8 @@
 /* What runs: a number that counts up, a file being read and a file being written. */
 typedef struct world {
     int count;
+    int aborts_at; /* on the way between a copy and a checkpoint; 0: nowhere */
+    int fails_at;
     FILE *in;
     FILE *out;
     sem_t *looping; /* shared memory: posted by a branch that loops; may be NULL */
@@ -70,17 +72,35 @@ static int branch(void *context, size_t number, const void *request, size_t size
     return cp_branch_write(answer, &w->count, sizeof w->count) ? 0 : 1;
 }
 
-static cp_checkpoints *create(world *w, size_t kept, unsigned cpu_s)
+// The count is the clock: what the original did between a copy and a checkpoint.
+static int advance(void *context, double time_s)
+{
+    world *w = context;
+    while (w->count < (int)time_s)
+        w->count++;
+    if (w->aborts_at != 0 && w->count == w->aborts_at)
+        abort();
+    return w->fails_at != 0 && w->count == w->fails_at ? 1 : 0;
+}
+
+static cp_checkpoints *create_every(world *w, size_t kept, size_t every, unsigned cpu_s)
 {
     cp_checkpoint_options options = cp_checkpoint_options_default();
     cp_checkpoints *checkpoints = NULL;
     cp_error error = {0};
     options.kept = kept;
+    options.every = every;
+    options.advance = advance;
     options.cpu_s = cpu_s;
     options.branch = branch;
     options.context = w;
     assert_int_equal(cp_checkpoints_create(&options, &checkpoints, &error), CP_OK);
     return checkpoints;
+}
+
+static cp_checkpoints *create(world *w, size_t kept, unsigned cpu_s)
+{
+    return create_every(w, kept, 1, cpu_s);
 }
 
 static void take(cp_checkpoints *checkpoints, double time_s)
@@ -133,9 +153,79 @@ static void the_oldest_makes_way(void **unused)
     cp_checkpoints_destroy(checkpoints);
 }
 
-static void files_of_the_original_are_left_alone(void **unused)
+static long own_children(void)
+{
+    char path[64], text[4096] = "";
+    long count = 0;
+    snprintf(path, sizeof path, "/proc/self/task/%d/children", (int)getpid());
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    if (fgets(text, sizeof text, file) != NULL)
+        for (const char *at = text; *at != '\0'; at++)
+            count += *at == ' ';
+    fclose(file);
+    return count;
+}
+
+// Whatever the number of checkpoints for a copy: the same checkpoints, the same answers.
+static void checkpoints_between_copies_are_reached(void **unused)
 {
     (void)unused;
+    deed what = COUNT_UP;
+    for (size_t every = 1; every <= 7; every++) {
+        world w = {0};
+        double time_s = 0.0;
+        cp_branch_end ends[2];
+        cp_checkpoints *checkpoints = create_every(&w, 5, every, 10);
+        for (w.count = 1; w.count <= 12; w.count++) {
+            take(checkpoints, w.count);
+            assert_true(own_children() <= 1 + (long)((5 + every - 2) / every));
+            for (int back = 0; back < 7; back++) {
+                bool is_kept = back < 5 && back < w.count;
+                int then = w.count - back;
+                assert_int_equal(cp_checkpoints_find(checkpoints, then + 0.5, &time_s), is_kept);
+                if (!is_kept)
+                    continue;
+                assert_true(time_s == then);
+                assert_true(cp_checkpoints_branch(checkpoints, then, &what, sizeof what, 2, ends));
+                for (int k = 0; k < 2; k++) {
+                    assert_true(ends[k].answered);
+                    assert_int_equal(*(const int *)ends[k].answer, then + 1 + k);
+                }
+            }
+        }
+        cp_checkpoints_destroy(checkpoints);
+    }
+}
+
+static void a_checkpoint_that_is_not_reached_says_why(void **unused)
+{
+    (void)unused;
+    deed what = COUNT_UP;
+    world w = {.aborts_at = 13, .fails_at = 17};
+    cp_branch_end ends[2];
+    cp_checkpoints *checkpoints = create_every(&w, 20, 20, 10);
+    for (w.count = 1; w.count <= 20; w.count++)
+        take(checkpoints, w.count);
+    const struct {
+        double time_s;
+        const char *failure;
+    } WAYS[] = {{13, "ended by signal 6 (Aborted)"}, {17, "failed"}};
+    for (size_t way = 0; way < 2; way++) {
+        assert_true(
+            cp_checkpoints_branch(checkpoints, WAYS[way].time_s, &what, sizeof what, 2, ends));
+        for (int k = 0; k < 2; k++) {
+            assert_false(ends[k].answered);
+            assert_string_equal(ends[k].failure, WAYS[way].failure);
+        }
+    }
+    assert_true(cp_checkpoints_branch(checkpoints, 16, &what, sizeof what, 1, ends));
+    assert_int_equal(*(const int *)ends[0].answer, 17);
+    cp_checkpoints_destroy(checkpoints);
+}
+
+static void leave_files_alone(size_t every)
+{
     char in_path[] = "/tmp/crashpulse-test-XXXXXX", out_path[] = "/tmp/crashpulse-test-XXXXXX";
     char line[32];
     world w = {.in = fdopen(mkstemp(in_path), "w"), .out = fdopen(mkstemp(out_path), "w")};
@@ -152,10 +242,11 @@ static void files_of_the_original_are_left_alone(void **unused)
 
     cp_branch_end ends[2];
     deed what = READ_AND_WRITE;
-    cp_checkpoints *checkpoints = create(&w, 2, 10);
+    cp_checkpoints *checkpoints = create_every(&w, 2, every, 10);
     take(checkpoints, 1.0);
+    take(checkpoints, 2.0); // at the same place
     assert_non_null(fgets(line, sizeof line, w.in));
-    assert_true(cp_checkpoints_branch(checkpoints, 1.0, &what, sizeof what, 2, ends));
+    assert_true(cp_checkpoints_branch(checkpoints, 2.0, &what, sizeof what, 2, ends));
     assert_string_equal(ends[0].answer, "line 1\n");
     assert_string_equal(ends[1].answer, "line 1\n");
     assert_non_null(fgets(line, sizeof line, w.in));
@@ -217,6 +308,13 @@ static int count_entries(const char *folder)
     return count;
 }
 
+static void files_of_the_original_are_left_alone(void **unused)
+{
+    (void)unused;
+    leave_files_alone(1);
+    leave_files_alone(2);
+}
+
 // The sanitizer keeps what was freed for a while.
 #if defined(__SANITIZE_ADDRESS__)
 #define PAGES_ALLOWED 8192
@@ -249,7 +347,7 @@ static void a_thousand_branches_leave_nothing(void **unused)
     int descriptors = count_entries("/proc/self/fd");
     long pages = 0;
     for (int round = 0; round < 2; round++) {
-        cp_checkpoints *checkpoints = create(&w, 4, 10);
+        cp_checkpoints *checkpoints = create_every(&w, 4, 2, 10);
         for (int k = 0; k < (round == 0 ? 10 : 100); k++) {
             cp_branch_end ends[10];
             w.count = k;
@@ -267,7 +365,7 @@ static void a_thousand_branches_leave_nothing(void **unused)
 }
 
 // A worker whose branch loops, ended by that signal: nothing of it stays. Its orphans come to us.
-static void assert_all_end_by(int signal_number)
+static void assert_all_end_by(int signal_number, size_t every)
 {
     sem_t *looping =
         mmap(NULL, sizeof *looping, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -278,16 +376,17 @@ static void assert_all_end_by(int signal_number)
         world w = {.looping = looping};
         deed what = LOOP;
         cp_branch_end end;
-        cp_checkpoints *checkpoints = create(&w, 3, 300);
+        cp_checkpoints *checkpoints = create_every(&w, 3, every, 300);
         take(checkpoints, 1.0);
         take(checkpoints, 2.0);
-        cp_checkpoints_branch(checkpoints, 1.0, &what, sizeof what, 1, &end);
+        cp_checkpoints_branch(checkpoints, 2.0, &what, sizeof what, 1, &end);
         _exit(0);
     }
     assert_int_equal(sem_wait(looping), 0);
     kill(worker, signal_number);
 
-    // The worker, its two checkpoints (by the signal or for want of a worker) and the branch.
+    // The worker, its two copies, or one and its guide (by the signal or for want of a worker), and
+    // the branch.
     int wait_status, ended = 0;
     while (wait(&wait_status) > 0) {
         assert_true(WIFSIGNALED(wait_status) || WEXITSTATUS(wait_status) == 0);
@@ -303,10 +402,10 @@ static void nothing_outlives_the_worker(void **unused)
 {
     (void)unused;
     assert_int_equal(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
-    for (int k = 0; k < 2; k++) {
-        assert_all_end_by(SIGKILL);
-        assert_all_end_by(SIGINT);
-        assert_all_end_by(SIGTERM);
+    for (size_t k = 0; k < 2; k++) {
+        assert_all_end_by(SIGKILL, 1 + k);
+        assert_all_end_by(SIGINT, 1 + k);
+        assert_all_end_by(SIGTERM, 1 + k);
     }
     assert_int_equal(prctl(PR_SET_CHILD_SUBREAPER, 0), 0);
 }
@@ -341,6 +440,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(goes_on_from_the_frozen_state),
         cmocka_unit_test(the_oldest_makes_way),
+        cmocka_unit_test(checkpoints_between_copies_are_reached),
+        cmocka_unit_test(a_checkpoint_that_is_not_reached_says_why),
         cmocka_unit_test(files_of_the_original_are_left_alone),
         cmocka_unit_test(a_branch_that_dies_harms_nobody),
         cmocka_unit_test(a_thousand_branches_leave_nothing),

@@ -37,8 +37,11 @@ cp_vehicle_model cp_vehicle_model_cover(const cp_vehicle_model *model, double le
     cp_vehicle_model covering = *model;
     covering.length_m = fmax(model->length_m, length_m);
     covering.width_m = fmax(model->width_m, width_m);
-    covering.is_stretched = covering.length_m > model->length_m + CP_VEHICLE_STRETCHED_LENGTH_M ||
-                            covering.width_m > model->width_m + CP_VEHICLE_STRETCHED_WIDTH_M;
+    // 5.9 m over 5.3 m is not more than 0.6 m, whatever the last bit says.
+    double longer_m = covering.length_m - model->length_m - 1e-9;
+    double wider_m = covering.width_m - model->width_m - 1e-9;
+    covering.is_stretched =
+        longer_m > CP_VEHICLE_STRETCHED_LENGTH_M || wider_m > CP_VEHICLE_STRETCHED_WIDTH_M;
     return covering;
 }
 

@@ -3,6 +3,7 @@
 named and not made a car."""
 import argparse
 import pathlib
+import re
 import shutil
 import sqlite3
 import subprocess
@@ -52,6 +53,7 @@ VEHICLE = "vehicle: mine\nparameters:\n  - {name: mass_kg, value: 1500}\n"
 parser = argparse.ArgumentParser()
 parser.add_argument("--crashpulse", required=True)
 parser.add_argument("--network", required=True, help="folder of the crossing")
+parser.add_argument("--town", required=True, help="route file of the town")
 arguments = parser.parse_args()
 crashpulse = arguments.crashpulse
 
@@ -152,3 +154,26 @@ with tempfile.TemporaryDirectory() as name:
     result = run(crashpulse, "run", study, "--db", folder / "bad.db", expect=2)
     check("study.yaml:" in result.stderr and "no vehicle 'toyota' is shipped" in result.stderr,
           result.stderr)
+
+    # The town's types crash as what they are called, whatever the study's default, and by class and
+    # size they would too.
+    town = re.search(r"<vTypeDistribution.*</vTypeDistribution>",
+                     pathlib.Path(arguments.town).read_text(), re.S).group(0)
+    flows = "".join(f'<flow id="{name}" type="traffic" begin="{begin}" end="400" period="{period}" '
+                    f'from="{start}" to="{end}" departSpeed="desired"/>'
+                    for name, begin, period, start, end in FLOWS)
+    expected = {"small_car": "small_car", "compact_car": "small_car",
+                "mid_size_car": "honda_accord_2014", "suv": "suv", "van": "van"}
+    for named, default in ((True, "  default: cars/mine.yaml\n"), (False, "")):
+        routes.write_text("<routes>" + (town if named else re.sub("<param[^>]*/>", "", town)) + flows +
+                          "</routes>")
+        study.write_text(STUDY.format(design="paired_seeds", duration_s=400, default=default))
+        result = run(crashpulse, "run", study, "--db", folder / f"town{named}.db")
+        connection = sqlite3.connect(folder / f"town{named}.db")
+        rows = {(row[0], row[1], row[2]) for row in connection.execute(
+            "SELECT sumo_type, vehicle_model, chosen_by FROM vehicle_type_model")}
+        rule = "sumo_type" if named else "class_and_size"
+        check(rows == {(t, m, rule) for t, m in expected.items()}, rows)
+        check(connection.execute("SELECT count(*) FROM crash_vehicle WHERE validity LIKE '%size%'")
+              .fetchone()[0] == 0, "models of other sizes than the town's types")
+        connection.close()

@@ -167,7 +167,7 @@ with tempfile.TemporaryDirectory() as name:
     for named, default in ((True, "  default: cars/mine.yaml\n"), (False, "")):
         routes.write_text("<routes>" + (town if named else re.sub("<param[^>]*/>", "", town)) + flows +
                           "</routes>")
-        study.write_text(STUDY.format(design="paired_seeds", duration_s=400, default=default))
+        study.write_text(STUDY.format(design="paired_seeds", duration_s=160, default=default))
         result = run(crashpulse, "run", study, "--db", folder / f"town{named}.db")
         connection = sqlite3.connect(folder / f"town{named}.db")
         rows = {(row[0], row[1], row[2]) for row in connection.execute(

@@ -28,21 +28,30 @@ static void bodies_later(const void *context, double time_s, cp_rectangle rectan
         rectangle[k] = cp_touching_body_later(&body[k], time_s);
 }
 
+// How long they go on. Slower than what goes deep straight on in the time is no crash at any angle.
+static double duration_of(double speed_m_s)
+{
+    if (speed_m_s < CP_CONFIRMATION_DEPTH_M / CP_CONFIRMATION_TIME_S)
+        return CP_CONFIRMATION_TIME_S;
+    return fmax(CP_CONFIRMATION_TIME_S, CP_CONFIRMATION_PATH_M / speed_m_s);
+}
+
 bool cp_contact_goes_deep(const cp_touching_body body[2])
 {
     // The relative speed of now, and what turning the velocities can add to it.
     double speed_m_s =
         cp_vec2_length(cp_vec2_sub(body[0].front_velocity_m_s, body[1].front_velocity_m_s));
+    double duration_s = duration_of(speed_m_s);
     for (int k = 0; k < 2; k++)
-        speed_m_s += fabs(body[k].yaw_rate_rad_s) * CP_CONFIRMATION_TIME_S *
-                     cp_vec2_length(body[k].front_velocity_m_s);
+        speed_m_s +=
+            fabs(body[k].yaw_rate_rad_s) * duration_s * cp_vec2_length(body[k].front_velocity_m_s);
     cp_rectangle rectangle[2] = {body[0].rectangle, body[1].rectangle};
     double yaw_rate_rad_s[2] = {body[0].yaw_rate_rad_s, body[1].yaw_rate_rad_s};
-    cp_approach approach = {
-        .rectangles_at = bodies_later,
-        .context = body,
-        .duration_s = CP_CONFIRMATION_TIME_S,
-        .rate_m_s = cp_approach_rate(rectangle, speed_m_s, yaw_rate_rad_s, CP_CONFIRMATION_TIME_S)};
+    cp_approach approach = {.rectangles_at = bodies_later,
+                            .context = body,
+                            .duration_s = duration_s,
+                            .rate_m_s =
+                                cp_approach_rate(rectangle, speed_m_s, yaw_rate_rad_s, duration_s)};
     double time_s;
     return cp_approach_reaches(&approach, -CP_CONFIRMATION_DEPTH_M, &time_s);
 }

@@ -10,12 +10,15 @@
  * assistance, SUMO or the handling of crashed cars does afterwards never decides. */
 #define CP_CONFIRMATION_DEPTH_M 0.4
 #define CP_CONFIRMATION_TIME_S 0.5
+#define CP_CONFIRMATION_PATH_M 1.0
 #define CP_CONFIRMATION_OVERLAP_1 0.1
 
 /* Where the body is time_s later on a constant turn: its front's velocity turns with it. */
 cp_rectangle cp_touching_body_later(const cp_touching_body *body, double time_s);
 
-/* True when, both going on like that, the rectangles overlap at least 0.4 m deep within 0.5 s. */
+/* True when, both going on like that, the rectangles overlap at least 0.4 m deep: within 0.5 s, or,
+ * where they meet at 0.8 m/s or more, within 1 m of relative path, so that a slow touch at an angle
+ * counts like one straight on. */
 bool cp_contact_goes_deep(const cp_touching_body body[2]);
 
 /* True for a crash: it goes deep, or it is front on front over at least 10 % of a's width (body

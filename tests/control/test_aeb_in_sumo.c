@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "control/control.h"
 
+#include "builders/two_cars.h"
 #include "control/brake.h"
 #include "control/lookout.h"
 #include "control/scripted_road.h"
 #include "control/ttc.h"
-#include "core/file.h"
 #include "core/units.h"
 #include "impact/approach.h"
 #include "impact/footprint.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -26,52 +25,15 @@
 #define DELAY_S 0.25 /* latency and dead time */
 #define JERK_M_S3 30.0
 #define DECELERATION_M_S2 8.0
-#define LENGTH_M 4.5
-#define WIDTH_M 1.8
-#define BEFORE_M 150.0 /* of every road, before the place where the front begins */
-
-/* The own car's front begins at (0, 0) heading east; the target as said. */
-typedef struct encounter {
-    const char *road; /* the target's */
-    double own_m_s;
-    double x_m, y_m, yaw_rad; /* the target's front at the beginning */
-    double target_m_s;
-    double radius_m, turn_rad; /* the arc from there on, left positive; 0: straight */
-    double ttc_s;              /* the function's threshold */
-} encounter;
 
 // ---- exact ---------------------------------------------------------------------------------
 
-// Place on the target's road, way_m from where its front begins.
-static cp_vec2 on_road(const encounter *e, double way_m)
-{
-    cp_vec2 start_m = {e->x_m, e->y_m};
-    double arc_m = fabs(e->turn_rad) * e->radius_m;
-    if (way_m <= 0.0 || arc_m <= 0.0)
-        return cp_vec2_add(start_m, cp_vec2_scale(cp_vec2_heading(e->yaw_rad), way_m));
-    double along_m = fmin(way_m, arc_m);
-    double turned_rad = e->turn_rad * along_m / arc_m;
-    double chord_m = 2.0 * e->radius_m * sin(0.5 * fabs(turned_rad));
-    cp_vec2 at_m = cp_vec2_add(
-        start_m, cp_vec2_scale(cp_vec2_heading(e->yaw_rad + 0.5 * turned_rad), chord_m));
-    return cp_vec2_add(at_m,
-                       cp_vec2_scale(cp_vec2_heading(e->yaw_rad + turned_rad), way_m - along_m));
-}
-
-static cp_rectangle target_at(const encounter *e, double time_s)
-{
-    double way_m = e->target_m_s * time_s;
-    cp_vec2 front_m = on_road(e, way_m), rear_m = on_road(e, way_m - LENGTH_M);
-    double yaw_rad = atan2(front_m.y - rear_m.y, front_m.x - rear_m.x);
-    cp_vec2 half = cp_vec2_scale(cp_vec2_heading(yaw_rad), 0.5 * LENGTH_M);
-    return (cp_rectangle){cp_vec2_sub(front_m, half), yaw_rad, LENGTH_M, WIDTH_M};
-}
-
 // With the velocity and yaw rate of its motion there.
-static cp_moving_rectangle moving_target_at(const encounter *e, double time_s)
+static cp_moving_rectangle moving_target_at(const two_cars *e, double time_s)
 {
     const double instant_s = 1e-4;
-    cp_rectangle now = target_at(e, time_s), soon = target_at(e, time_s + instant_s);
+    cp_rectangle now = two_cars_target_at(e, time_s),
+                 soon = two_cars_target_at(e, time_s + instant_s);
     return (cp_moving_rectangle){
         .rectangle = now,
         .velocity_m_s = cp_vec2_scale(cp_vec2_sub(soon.centre_m, now.centre_m), 1.0 / instant_s),
@@ -79,7 +41,7 @@ static cp_moving_rectangle moving_target_at(const encounter *e, double time_s)
 }
 
 // Way of the own car under the brake: the closed form of constant jerk, then constant deceleration.
-static double exact_way_m(const encounter *e, const cp_brake *brake, double time_s)
+static double exact_way_m(const two_cars *e, const cp_brake *brake, double time_s)
 {
     double after_s = fmax(0.0, time_s - brake->start_s);
     double rise_s = brake->deceleration_m_s2 / brake->jerk_m_s3;
@@ -93,7 +55,7 @@ static double exact_way_m(const encounter *e, const cp_brake *brake, double time
 
 // TTC below the threshold; of a target that turns also if it drove straight on from now, up to 0.5
 // s later (lookout.h, conditions 2 and 4).
-static bool is_threat(const encounter *e, const cp_moving_rectangle *own,
+static bool is_threat(const two_cars *e, const cp_moving_rectangle *own,
                       const cp_moving_rectangle *target)
 {
     if (!(cp_ttc_s(own, target, e->ttc_s) < e->ttc_s))
@@ -107,7 +69,7 @@ static bool is_threat(const encounter *e, const cp_moving_rectangle *own,
 
 // Own speed at the first touch of the exact motion; NAN when there is none. *request_s: the
 // instant at which the target becomes a threat.
-static double exact_impact_m_s(const encounter *e, double *impact_s, double *request_s)
+static double exact_impact_m_s(const two_cars *e, double *impact_s, double *request_s)
 {
     const double fine_s = 5e-4;
     cp_brake brake = {INFINITY, JERK_M_S3, DECELERATION_M_S2};
@@ -116,9 +78,11 @@ static double exact_impact_m_s(const encounter *e, double *impact_s, double *req
         if (speed_m_s <= 0.0)
             return NAN;
         double way_m = exact_way_m(e, &brake, time_s);
-        cp_moving_rectangle own = {
-            .rectangle = {{way_m - 0.5 * LENGTH_M, 0.0}, 0.0, LENGTH_M, WIDTH_M},
-            .velocity_m_s = {speed_m_s, 0.0}};
+        cp_moving_rectangle own = {.rectangle = {{way_m - 0.5 * TWO_CARS_LENGTH_M, 0.0},
+                                                 0.0,
+                                                 TWO_CARS_LENGTH_M,
+                                                 TWO_CARS_WIDTH_M},
+                                   .velocity_m_s = {speed_m_s, 0.0}};
         cp_moving_rectangle target = moving_target_at(e, time_s);
         if (cp_rectangle_separation(&own.rectangle, &target.rectangle) <= 0.0) {
             *impact_s = time_s;
@@ -146,38 +110,8 @@ static const char *const NAMES[] = {"ttc_s",
                                     "speed_min_m_s",
                                     NULL};
 
-static void write_routes(const encounter *e, const char *path)
+static cp_traffic *open_with(const two_cars *e, cp_controls **controls)
 {
-    char text[2048];
-    int size = snprintf(text, sizeof text, "<routes>\n");
-    const char *const ids[] = {"own", "target"}, *const roads[] = {"own", e->road};
-    const double speeds_m_s[] = {e->own_m_s, e->target_m_s};
-    for (int k = 0; k < 2; k++)
-        size += snprintf(text + size, sizeof text - (size_t)size,
-                         "<vType id='%s_type' length='%g' width='%g' sigma='0' speedFactor='1' "
-                         "speedDev='0' maxSpeed='%g' decel='9' emergencyDecel='9'/>\n"
-                         "<vehicle id='%s' type='%s_type' depart='0' departPos='%g' "
-                         "departSpeed='%g'><route edges='%s'/></vehicle>\n",
-                         ids[k], LENGTH_M, WIDTH_M, speeds_m_s[k], ids[k], ids[k], BEFORE_M,
-                         speeds_m_s[k], roads[k]);
-    size += snprintf(text + size, sizeof text - (size_t)size, "</routes>\n");
-    cp_error error = {0};
-    assert_int_equal(cp_file_write(path, text, (size_t)size, &error), CP_OK);
-}
-
-static cp_traffic *open_with(const encounter *e, cp_controls **controls)
-{
-    char sumocfg[1024], routes[1024];
-    const char *build = getenv("CRASHPULSE_BUILD");
-    snprintf(sumocfg, sizeof sumocfg, "%s/tests/control/two_cars/two_cars.sumocfg", build);
-    snprintf(routes, sizeof routes, "%s/tests/control/two_cars/%d.rou.xml", build, (int)getpid());
-    write_routes(e, routes);
-    const char *const words[] = {"--route-files", routes};
-    cp_traffic_options options = {.sumocfg = sumocfg,
-                                  .seed = 1,
-                                  .step_length_s = STEP_S,
-                                  .options = words,
-                                  .option_count = 2};
     const double values[] = {
         e->ttc_s, DECELERATION_M_S2, 0.15, DELAY_S - 0.15, JERK_M_S3, 0.0, 0.0, 180.0, 200.0, 0.0};
     cp_control_settings settings = road_settings(CP_CONTROL_FUNCTION, "aeb", NAMES, values);
@@ -185,11 +119,10 @@ static cp_traffic *open_with(const encounter *e, cp_controls **controls)
     const char *const ids[2] = {"own", "own"};
     cp_traffic *traffic;
     cp_error error = {0};
-    if (cp_traffic_create(&options, &traffic, &error) != CP_OK ||
+    if (two_cars_open(e, STEP_S, &traffic, &error) != CP_OK ||
         cp_controls_create(NULL, 0, 5, 1, traffic, controls, &error) != CP_OK ||
         cp_controls_add_treatment(*controls, &settings, 1, 5, 1, ids, &error) != CP_OK)
         fail_msg("%s", error.text);
-    unlink(routes);
     return traffic;
 }
 
@@ -200,17 +133,7 @@ typedef struct found {
     double astray_m;   /* the target, from where it is exactly, at most */
 } found;
 
-static const cp_vehicle_motion *motion_of(const cp_traffic *traffic, const char *id)
-{
-    size_t count;
-    const cp_vehicle_motion *motions = cp_traffic_motions(traffic, &count);
-    for (size_t k = 0; k < count; k++)
-        if (strcmp(cp_traffic_vehicle_id(traffic, motions[k].after.vehicle), id) == 0)
-            return &motions[k];
-    return NULL;
-}
-
-static found in_sumo(const encounter *e)
+static found in_sumo(const two_cars *e)
 {
     cp_controls *controls;
     cp_traffic *traffic = open_with(e, &controls);
@@ -221,14 +144,14 @@ static found in_sumo(const encounter *e)
         if (cp_traffic_step(traffic, &error) != CP_OK ||
             cp_controls_step(controls, &error) != CP_OK)
             fail_msg("%s", error.text);
-        const cp_vehicle_motion *own = motion_of(traffic, "own");
-        const cp_vehicle_motion *target = motion_of(traffic, "target");
+        const cp_vehicle_motion *own = two_cars_motion(traffic, "own");
+        const cp_vehicle_motion *target = two_cars_motion(traffic, "target");
         if (own == NULL || target == NULL)
             break;
         // The first step only puts the cars there.
         double now_s = cp_traffic_time_s(traffic);
         begun_s = isnan(begun_s) ? now_s : begun_s;
-        cp_rectangle exact = target_at(e, now_s - begun_s);
+        cp_rectangle exact = two_cars_target_at(e, now_s - begun_s);
         cp_rectangle there = cp_footprint_of_state(&target->after);
         result.astray_m =
             fmax(result.astray_m, cp_vec2_length(cp_vec2_sub(there.centre_m, exact.centre_m)));
@@ -248,7 +171,7 @@ static found in_sumo(const encounter *e)
 // Thresholds from late to early, so that the impact speed falls from the approach speed to nothing:
 // everywhere within the tolerance, and some of them near 2 m/s. Their distance and the step have no
 // common measure, so that requests fall into every part of a step.
-static void assert_as_exact(encounter e)
+static void assert_as_exact(two_cars e)
 {
     bool is_slow_one_seen = false;
     int impacts = 0;
@@ -278,20 +201,27 @@ static void assert_as_exact(encounter e)
     assert_true(impacts >= 10);
 }
 
+static void rear_end(void **unused)
+{
+    (void)unused;
+    // Slower ahead, in the same lane but for 0.4 m.
+    assert_as_exact((two_cars){"ahead", 15.0, 30.0, 0.4, 0.0, 1.2, 0.0, 0.0, 0.0, 0.0});
+}
+
 static void oncoming(void **unused)
 {
     (void)unused;
-    assert_as_exact((encounter){"oncoming", 14.0, 61.3, 0.0, CP_PI, 6.0, 0.0, 0.0, 0.0});
-    assert_as_exact((encounter){"oncoming_half", 20.0, 97.7, 0.9, CP_PI, 4.0, 0.0, 0.0, 0.0});
+    assert_as_exact((two_cars){"oncoming", 14.0, 61.3, 0.0, CP_PI, 6.0, 0.0, 0.0, 0.0, 0.0});
+    assert_as_exact((two_cars){"oncoming_half", 20.0, 97.7, 0.9, CP_PI, 4.0, 0.0, 0.0, 0.0, 0.0});
 }
 
 static void crossing(void **unused)
 {
     (void)unused;
     // A slow one crosses from the right, another obliquely from the left.
-    assert_as_exact((encounter){"crossing", 15.0, 48.2, -2.0, CP_PI / 2.0, 1.2, 0.0, 0.0, 0.0});
+    assert_as_exact((two_cars){"crossing", 15.0, 48.2, -2.0, CP_PI / 2.0, 1.2, 0.0, 0.0, 0.0, 0.0});
     assert_as_exact(
-        (encounter){"crossing_oblique", 12.0, 38.9, 2.5, -CP_PI / 3.0, 1.0, 0.0, 0.0, 0.0});
+        (two_cars){"crossing_oblique", 12.0, 38.9, 2.5, -CP_PI / 3.0, 1.0, 0.0, 0.0, 0.0, 0.0});
 }
 
 static void turning(void **unused)
@@ -299,14 +229,15 @@ static void turning(void **unused)
     (void)unused;
     // An oncoming car turns left across the way; one comes out of a side road and turns in.
     assert_as_exact(
-        (encounter){"turning_across", 12.0, 52.4, 3.4, CP_PI, 2.0, 9.0, CP_PI / 2.0, 0.0});
+        (two_cars){"turning_across", 12.0, 52.4, 3.4, CP_PI, 2.0, 9.0, CP_PI / 2.0, 0.0, 0.0});
     assert_as_exact(
-        (encounter){"turning_in", 13.0, 42.3, -9.0, CP_PI / 2.0, 3.0, 8.0, -CP_PI / 2.0, 0.0});
+        (two_cars){"turning_in", 13.0, 42.3, -9.0, CP_PI / 2.0, 3.0, 8.0, -CP_PI / 2.0, 0.0, 0.0});
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rear_end),
         cmocka_unit_test(oncoming),
         cmocka_unit_test(crossing),
         cmocka_unit_test(turning),

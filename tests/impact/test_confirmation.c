@@ -79,6 +79,24 @@ static void a_clipped_waiting_car_is_a_graze(void **state)
     assert_true(clip_is_crash(1.5));
 }
 
+// Straight on from 0.8 m/s; at 1 m/s also at an angle, when it would go deep; never slower.
+static void a_slow_touch_at_an_angle_counts_like_one_straight_on(void **state)
+{
+    (void)state;
+    for (double turned_rad = 0.0; turned_rad < 0.75; turned_rad += 0.1) {
+        // A flank turned away from square, in the middle of a car's way (further: its front).
+        for (double speed_m_s = 0.75; speed_m_s < 3.0; speed_m_s += 0.1) {
+            cp_touching_body moving = car(0, 0, 0, speed_m_s), flank = car(0, 0, 0, 0);
+            flank.rectangle.yaw_rad = CP_PI / 2 + turned_rad;
+            flank.rectangle.centre_m = (cp_vec2){10.0, 0.0};
+            for (int k = 0; k < 1000; k++)
+                flank.rectangle.centre_m.x -=
+                    cp_rectangle_separation(&moving.rectangle, &flank.rectangle);
+            assert_int_equal(is_crash(moving, flank), speed_m_s > 0.8);
+        }
+    }
+}
+
 static void a_constant_turn_follows_its_circle(void **state)
 {
     (void)state;
@@ -142,6 +160,7 @@ int main(void)
         cmocka_unit_test(a_clipped_waiting_car_is_a_graze),
         cmocka_unit_test(what_lies_in_the_way_is_measured_across_the_heading),
         cmocka_unit_test(a_vehicle_that_slides_or_spins_is_no_vehicle),
+        cmocka_unit_test(a_slow_touch_at_an_angle_counts_like_one_straight_on),
         cmocka_unit_test(a_constant_turn_follows_its_circle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

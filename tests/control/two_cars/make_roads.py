@@ -25,12 +25,17 @@ def road(x, y, yaw, radius=None, turn=0.0, before=150.0, after=150.0):
     return points
 
 
-# As in test_aeb_in_sumo.c: where each target's front is in the beginning.
+# As in test_aeb_in_sumo.c and impact/test_detector_in_sumo.c: where each target's front is in the
+# beginning.
 ROADS = {
     "own": road(0.0, 0.0, 0.0, after=250.0),
     "oncoming": road(61.3, 0.0, math.pi),
     "oncoming_half": road(97.7, 0.9, math.pi),
+    "oncoming_thin": road(97.7, 1.5, math.pi),
+    "ahead": road(30.0, 0.4, 0.0, after=250.0),
+    "behind": road(-20.0, -0.5, 0.0, after=250.0),
     "crossing": road(48.2, -2.0, math.pi / 2),
+    "crossing_left": road(48.2, 2.0, -math.pi / 2),
     "crossing_oblique": road(38.9, 2.5, -math.pi / 3),
     "turning_across": road(52.4, 3.4, math.pi, 9.0, math.pi / 2),
     "turning_in": road(42.3, -9.0, math.pi / 2, 8.0, -math.pi / 2),

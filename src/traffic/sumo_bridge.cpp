@@ -507,6 +507,12 @@ cp_status sumo_bridge_start(const char *sumocfg, uint64_t seed, double step_leng
     if (!(step_length_s >= 0.001))
         return cp_fail(error, CP_BAD_INPUT, "%s: step_length_s must be >= 0.001, found %g", sumocfg,
                        step_length_s);
+    // SUMO counts milliseconds: it would make steps of another length than we take them for.
+    if (std::fabs(1e3 * step_length_s - std::round(1e3 * step_length_s)) > 1e-6)
+        return cp_fail(
+            error, CP_BAD_INPUT,
+            "%s: step_length_s must be whole milliseconds, as SUMO counts them, found %g", sumocfg,
+            step_length_s);
     if (setenv("SUMO_HOME", "/usr/share/sumo", 0) != 0)
         return cp_fail_memory(error, "environment");
     try {

@@ -87,9 +87,10 @@ typedef enum cp_road_relation {
  * housekeeping (--no-step-log), the options every run of ours sets (ballistic update,
  * collision.action warn, junction checks, mingap-factor 0, thread-rngs: one random stream a lane,
  * at least 64) and seed and step length last; a word of those in options is refused by SUMO as
- * given twice. SUMO takes 31 bits of the seed. begin/end times stay those of the configuration.
- * Sets SUMO_HOME when it is unset. SUMO's warnings go to stderr (but those of collisions and
- * emergency braking, which are what a run is for), its errors into error. */
+ * given twice. SUMO takes 31 bits of the seed, and its clock counts milliseconds: a step length of
+ * another kind is refused. begin/end times stay those of the configuration. Sets SUMO_HOME when it
+ * is unset. SUMO's warnings go to stderr (but those of collisions and emergency braking, which are
+ * what a run is for), its errors into error. */
 CP_MUST_CHECK cp_status sumo_bridge_start(const char *sumocfg, uint64_t seed, double step_length_s,
                                           const char *const *options, size_t option_count,
                                           cp_error *error);

@@ -234,6 +234,72 @@ JOIN variant AS v ON v.id = r.variant_id
 GROUP BY s.id, v.id, x.verdict
 ORDER BY s.number, v.number, x.verdict;
 
+-- What contacts each scenario's network makes without any driver error or function, by reason; crash:
+-- confirmed. Scenarios that start SUMO alike share what was simulated for one of them.
+DROP VIEW IF EXISTS background_by_reason;
+CREATE VIEW background_by_reason AS
+SELECT s.name AS scenario, s.id AS scenario_id, c.reason, c.crash_type, count(*) AS contacts,
+       avg(c.closing_speed_m_s) AS closing_speed_mean_m_s
+FROM scenario AS s
+JOIN scenario AS x ON (x.sumocfg, x.sumo_options, x.files) = (s.sumocfg, s.sumo_options, s.files)
+JOIN background_contact AS c ON c.scenario_id = x.id
+GROUP BY s.id, c.reason, c.crash_type
+ORDER BY s.number, c.reason, c.crash_type;
+
+-- The same in all beside the baseline: background crashes to expect in as many vehicle-km as the
+-- baseline has, which are the network's doing, not the drivers'; NULL before it has any.
+-- is_negligible: none, or at most 5 % of the baseline's crashes and of its frontal ones; NULL when no
+-- background was simulated.
+DROP VIEW IF EXISTS background_by_scenario;
+CREATE VIEW background_by_scenario AS
+WITH background AS (
+    SELECT s.id AS scenario_id, count(*) AS runs, sum(b.simulated_s) AS simulated_s,
+           sum(b.vehicle_km) AS vehicle_km, sum(b.vehicle_h) AS vehicle_h
+    FROM scenario AS s
+    JOIN scenario AS x ON (x.sumocfg, x.sumo_options, x.files)
+                          = (s.sumocfg, s.sumo_options, s.files)
+    JOIN background_run AS b ON b.scenario_id = x.id
+    GROUP BY s.id
+), counted AS (
+    SELECT scenario_id, sum(contacts) FILTER (WHERE reason = 'crash') AS crashes,
+           sum(contacts) FILTER (WHERE reason = 'crash' AND crash_type LIKE 'front-%')
+               AS frontal_crashes,
+           sum(contacts) FILTER (WHERE reason <> 'crash') AS other_contacts
+    FROM background_by_reason
+    GROUP BY scenario_id
+), baseline AS (
+    SELECT r.scenario_id, sum(r.vehicle_km) AS vehicle_km, sum(r.crashes) AS crashes,
+           sum(r.frontal_crashes) AS frontal_crashes
+    FROM replication_crashes AS r
+    JOIN variant AS v ON v.id = r.variant_id
+    WHERE v.is_baseline
+    GROUP BY r.scenario_id
+), beside AS (
+    SELECT s.name AS scenario, s.id AS scenario_id, s.number AS number,
+           coalesce(b.runs, 0) AS runs, b.simulated_s, b.vehicle_km, b.vehicle_h,
+           CASE WHEN b.runs > 0 THEN coalesce(k.crashes, 0) END AS crashes,
+           CASE WHEN b.runs > 0 THEN coalesce(k.frontal_crashes, 0) END AS frontal_crashes,
+           CASE WHEN b.runs > 0 THEN coalesce(k.other_contacts, 0) END AS other_contacts,
+           coalesce(l.vehicle_km, 0.0) AS baseline_vehicle_km,
+           coalesce(l.crashes, 0) AS baseline_crashes,
+           coalesce(l.frontal_crashes, 0) AS baseline_frontal_crashes,
+           nullif(l.vehicle_km, 0.0) / nullif(b.vehicle_km, 0.0) AS scale_1
+    FROM scenario AS s
+    LEFT JOIN background AS b ON b.scenario_id = s.id
+    LEFT JOIN counted AS k ON k.scenario_id = s.id
+    LEFT JOIN baseline AS l ON l.scenario_id = s.id
+)
+SELECT scenario, scenario_id, runs, simulated_s, vehicle_km, vehicle_h, crashes, frontal_crashes,
+       other_contacts, baseline_vehicle_km, baseline_crashes, baseline_frontal_crashes,
+       crashes * scale_1 AS expected_crashes, frontal_crashes * scale_1 AS expected_frontal_crashes,
+       CASE WHEN runs > 0 THEN
+           crashes = 0 OR coalesce(crashes * scale_1 <= 0.05 * baseline_crashes
+                                   AND frontal_crashes * scale_1 <= 0.05 * baseline_frontal_crashes,
+                                   0)
+       END AS is_negligible
+FROM beside
+ORDER BY number;
+
 -- How far the study has come.
 DROP VIEW IF EXISTS progress;
 CREATE VIEW progress AS

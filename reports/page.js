@@ -823,8 +823,10 @@
       ["Simulated", `${study.duration_s} s each, of these ${study.warmup_s} s warm-up not counted; step ${study.step_length_s} s`],
       ...data.about.scenarios.map(s => [`Driver errors in ${s.name}`, JSON.parse(s.driver_errors).map(e => `${e.model} (${parameters(e.parameters)})`).join("; ") || "none"]),
       ...data.variants.map(v => [`Variant ${v.name}`, v.functions.map(f => `${f.function} (${parameters(f.parameters)})`).join("; ") || "no function"]),
+      ...data.backgrounds.map(b => [`Without driver errors, ${b.scenario}`, b.is_known ? b.text + ": the network’s own doing" : "not simulated"]),
       ["Observation", "the frontally struck vehicle; a crash with both fronts struck gives two, kept together with all crashes of their replication in every interval and test"]
     ]);
+    data.backgrounds.filter(b => b.warning).forEach(b => element(parent, "p", `Mind: ${b.warning}.`, { class: "warning" }));
     document.getElementById("note-contrasts").textContent = study.design === "counterfactual" ?
       "p by sign flips of whole replications; intervals by bootstrap over replications (BCa), given from 20 replications on. Hodges–Lehmann: the median of all means of two changes." :
       (study.design === "paired_seeds" ? "p by sign flips of whole seed pairs" : "p by permutation of whole replications") +

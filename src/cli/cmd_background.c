@@ -2,7 +2,6 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "run/background_request.h"
-#include "store/background_rows.h"
 #include "study/study_file.h"
 
 #include <math.h>
@@ -14,7 +13,7 @@ typedef struct arguments {
     const char *db_path;
     double duration_s;    /* NAN: the study's, or 900 */
     double step_length_s; /* NAN: 0.1 */
-    long seed;
+    long seed;            /* < 0: the study's, of a .sumocfg 1 */
     cp_format format;
 } arguments;
 
@@ -25,8 +24,8 @@ static const struct argp_option OPTIONS[] = {
      0},
     {"step-length", STEP_LENGTH, "S", 0,
      "step length of a .sumocfg's run, s (default 0.1); a study has its own", 0},
-    {"seed", SEED, "N", 0, "SUMO's seed (default 1)", 0},
-    {"db", DB, "FILE", 0, "of a study: store the result in its database, table background", 0},
+    {"seed", SEED, "N", 0, "SUMO's seed (default: the study's, of a .sumocfg 1)", 0},
+    {"db", DB, "FILE", 0, "of a study: store the result in its database too", 0},
     {0},
 };
 
@@ -69,16 +68,18 @@ static const struct argp ARGP = {
     .options = OPTIONS,
     .parser = parse,
     .args_doc = "SUMOCFG|STUDY.yaml",
-    .doc = "Run a network, or every scenario of a study, without any driver error or assistance "
-           "function, and tell what contacts remain: the crashes among them are the network's "
-           "doing, the others were filtered for the reason given."
-           "\v"
-           "Reasons: graze, overlap_at_insertion, lane_change_jump, impossible_motion, "
-           "clipped_waiting, long_vehicle_turning, no_common_road, other_level. SUMO's own "
-           "collision reports stand behind them by what became of them.\n\n"
-           "Examples:\n"
-           "  crashpulse background town.sumocfg --duration 900\n"
-           "  crashpulse background study.yaml --db study.db\n",
+    .doc =
+        "Run a network, or every scenario of a study, without any driver error or assistance "
+        "function, and tell what contacts remain: the crashes among them are the network's "
+        "doing, the others were filtered for the reason given. 'crashpulse run' does the same for "
+        "a study and stores it (tables background_run, background_contact)."
+        "\v"
+        "Reasons: graze, overlap_at_insertion, lane_change_jump, impossible_motion, "
+        "clipped_waiting, long_vehicle_turning, no_common_road, other_level. SUMO's own "
+        "collision reports stand behind them by what became of them.\n\n"
+        "Examples:\n"
+        "  crashpulse background town.sumocfg --duration 900\n"
+        "  crashpulse background study.yaml --db study.db\n",
     .children = CHILDREN,
 };
 
@@ -128,36 +129,7 @@ static void add_rows(cp_table *table, const json_t *result)
     cp_table_integer(table, 0);
 }
 
-static cp_status store_rows(const char *db_path, const json_t *result, cp_error *error)
-{
-    const json_t *contacts = json_object_get(result, "contacts");
-    size_t count = json_array_size(contacts);
-    cp_background_contact *rows = calloc(count + 1, sizeof *rows);
-    cp_store *store = NULL;
-    if (rows == NULL)
-        return cp_fail_memory(error, "background");
-    for (size_t k = 0; k < count; k++) {
-        const json_t *row = json_array_get(contacts, k);
-        rows[k] = (cp_background_contact){text_of(row, "reason"), text_of(row, "crash_type"),
-                                          (int64_t)number_of(row, "contacts")};
-    }
-    cp_background_rows background = {.scenario = text_of(result, "network"),
-                                     .seed = (uint64_t)number_of(result, "seed"),
-                                     .step_length_s = number_of(result, "step_length_s"),
-                                     .simulated_s = number_of(result, "simulated_s"),
-                                     .vehicle_km = number_of(result, "vehicle_km"),
-                                     .contacts = rows,
-                                     .count = count};
-    cp_status status = cp_store_open(db_path, CP_STORE_WRITE, &store, error);
-    if (status == CP_OK)
-        status = cp_background_rows_write(store, &background, error);
-    cp_store_close(store);
-    free(rows);
-    return status;
-}
-
-static cp_status run_one(const arguments *a, const cp_background_request *request, cp_table *table,
-                         cp_error *error)
+static cp_status run_one(const cp_background_request *request, cp_table *table, cp_error *error)
 {
     char *text = NULL;
     cp_status status = cp_background_request_run(request, &text, error);
@@ -165,8 +137,6 @@ static cp_status run_one(const arguments *a, const cp_background_request *reques
     if (status == CP_OK && result == NULL)
         status =
             cp_fail(error, CP_RUN_FAILED, "%s: the worker's result cannot be read", request->path);
-    if (status == CP_OK && a->db_path != NULL)
-        status = store_rows(a->db_path, result, error);
     if (status == CP_OK)
         add_rows(table, result);
     json_decref(result);
@@ -181,12 +151,9 @@ static cp_status run_study(const arguments *a, cp_background_request request, cp
     cp_status status = cp_study_load(a->path, &study, error);
     if (status != CP_OK)
         return status;
-    if (isnan(a->duration_s))
-        request.duration_s = study.duration_s;
-    request.step_length_s = study.step_length_s;
     for (size_t k = 0; k < study.scenario_count && status == CP_OK; k++) {
         request.scenario = study.scenarios[k].name;
-        status = run_one(a, &request, table, error);
+        status = run_one(&request, table, error);
     }
     cp_study_destroy(&study);
     return status;
@@ -196,19 +163,22 @@ cp_status cmd_background(int argc, char **argv, cp_error *error)
 {
     static const char *const COLUMN[] = {"network", "simulated_s", "vehicle_km", "reported_by",
                                          "reason",  "crash_type",  "contacts"};
-    arguments a = {.duration_s = NAN, .step_length_s = NAN, .seed = 1};
+    arguments a = {.duration_s = NAN, .step_length_s = NAN, .seed = -1};
     cp_args_parse(&ARGP, argc, argv, &a);
     if (a.db_path != NULL && !is_study(a.path))
         return cp_fail(error, CP_BAD_INPUT, "%s: --db is for the scenarios of a study", a.path);
+    uint64_t seed = a.seed < 0 ? 1 : (uint64_t)a.seed;
+    double duration_s = isnan(a.duration_s) && !is_study(a.path) ? 900.0 : a.duration_s;
     cp_background_request request = {.path = a.path,
-                                     .seed = (uint64_t)a.seed,
+                                     .seed = a.seed < 0 && is_study(a.path) ? NULL : &seed,
                                      .step_length_s =
                                          isnan(a.step_length_s) ? 0.1 : a.step_length_s,
-                                     .duration_s = isnan(a.duration_s) ? 900.0 : a.duration_s};
+                                     .duration_s = duration_s,
+                                     .db_path = a.db_path};
     cp_table table = {0};
     cp_table_begin(&table, COLUMN, sizeof COLUMN / sizeof *COLUMN);
-    cp_status status = is_study(a.path) ? run_study(&a, request, &table, error)
-                                        : run_one(&a, &request, &table, error);
+    cp_status status =
+        is_study(a.path) ? run_study(&a, request, &table, error) : run_one(&request, &table, error);
     if (status == CP_OK)
         status = cp_table_print(&table, a.format, stdout, error);
     cp_table_destroy(&table);

@@ -6,6 +6,7 @@
 #include "report/answer.h"
 #include "report/comparison_json.h"
 #include "report/grouping.h"
+#include "report/network_background.h"
 #include "report/quantity.h"
 
 #include <stdlib.h>
@@ -105,6 +106,7 @@ typedef struct job {
     cp_store *store;
     cp_study_data data;
     cp_grouping grouping;
+    cp_network_backgrounds backgrounds;
     cp_comparison *comparison; /* one a group */
     char **answer;
     cp_comparison_options options;
@@ -121,6 +123,7 @@ static void job_destroy(job *j)
     free(j->comparison);
     free(j->answer);
     cp_grouping_destroy(&j->grouping);
+    cp_network_backgrounds_destroy(&j->backgrounds);
     cp_study_data_destroy(&j->data);
     cp_store_close(j->store);
 }
@@ -147,6 +150,8 @@ static json_t *group_json(const job *j, size_t k)
     if (j->a.by)
         json_object_set_new(result, "by_value", json_string(j->grouping.name[k]));
     if (json_object_set_new(result, "study", json_string(j->data.name)) != 0 ||
+        json_object_set_new(result, "background", cp_network_backgrounds_json(&j->backgrounds)) !=
+            0 ||
         json_object_set_new(result, "answer", json_string(j->answer[k])) != 0) {
         json_decref(result);
         return NULL;
@@ -190,6 +195,14 @@ static cp_status print_tables(const job *j, cp_error *error)
         status = cp_comparison_print_table(&j->data, &j->comparison[k], heading, j->answer[k],
                                            stdout, error);
     }
+
+    // Below, once: what of it all is not the drivers' doing.
+    char *paragraph = NULL;
+    if (status == CP_OK)
+        status = cp_network_backgrounds_paragraph(&j->backgrounds, &paragraph, error);
+    if (status == CP_OK && paragraph[0])
+        cp_comparison_print_paragraph(paragraph, stdout);
+    free(paragraph);
     return status;
 }
 
@@ -235,6 +248,8 @@ cp_status cmd_compare(int argc, char **argv, cp_error *error)
     if (status == CP_OK)
         status = cp_grouping_create(j.store, &j.data, j.a.scenario, j.a.by, j.a.where, &j.grouping,
                                     error);
+    if (status == CP_OK)
+        status = cp_network_backgrounds_read(j.store, j.a.scenario, &j.backgrounds, error);
     if (status == CP_OK)
         status = compare_groups(&j, baseline, error);
     if (status == CP_OK && stored)

@@ -217,6 +217,9 @@ static void print_summary(const planned *p)
     if (p->dropped > 0)
         printf("; %zu in the database are planned no more", p->dropped);
     printf("\n");
+    if (p->rows.background_count > 0)
+        printf("and %zu of %g s without driver errors or functions, one a network\n",
+               p->rows.background_count, p->rows.background[0].duration_s);
     if (p->study.design == CP_DESIGN_COUNTERFACTUAL)
         printf("every crash of the baseline is run again with each of %zu treatments\n",
                p->study.variant_count - 1);

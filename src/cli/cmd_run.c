@@ -2,6 +2,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/log.h"
+#include "report/network_background.h"
 #include "run/runner.h"
 
 #include <stdlib.h>
@@ -75,13 +76,32 @@ static const struct argp ARGP = {
     .parser = parse,
     .args_doc = "STUDY.yaml --db FILE",
     .doc = "Simulate a study: every scenario with every variant and seed, each replication in a "
-           "process of its own. Every crash, its pulses and the exposure go into the database."
+           "process of its own, and each network once without driver errors or functions, which "
+           "tells what crashes are its own doing. Every crash, its pulses and the exposure go into "
+           "the database."
            "\v"
            "A run that was stopped goes on where it ended when it is started again; replications "
            "that are done stay. The result does not depend on --jobs.\n\n"
            "Example:\n"
            "  crashpulse run sumo_scenarios/demo/study.yaml --db demo.db --jobs 2\n",
 };
+
+// What of the crashes is not the drivers' doing, when that is not little.
+static cp_status warn_of_backgrounds(const char *db_path, cp_error *error)
+{
+    cp_store *store = NULL;
+    cp_network_backgrounds backgrounds = {0};
+    cp_status status = cp_store_open(db_path, CP_STORE_READ, &store, error);
+    if (status == CP_OK)
+        status = cp_network_backgrounds_read(store, NULL, &backgrounds, error);
+    for (size_t k = 0; status == CP_OK && k < backgrounds.count; k++)
+        if (backgrounds.row[k].warning != NULL)
+            cp_log_warning("%s (without driver errors: %s)", backgrounds.row[k].warning,
+                           backgrounds.row[k].text);
+    cp_network_backgrounds_destroy(&backgrounds);
+    cp_store_close(store);
+    return status;
+}
 
 cp_status cmd_run(int argc, char **argv, cp_error *error)
 {
@@ -96,5 +116,7 @@ cp_status cmd_run(int argc, char **argv, cp_error *error)
                     "%zu crashes; %.1f s",
                     summary.replications, summary.done_before, summary.done_now, summary.failed,
                     summary.elsewhere, summary.crashes, summary.wall_time_s);
+    if (status == CP_OK)
+        status = warn_of_backgrounds(options.db_path, error);
     return status;
 }

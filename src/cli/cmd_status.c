@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/args.h"
 #include "cli/commands.h"
+#include "report/network_background.h"
 #include "run/owner.h"
 #include "store/query.h"
 
@@ -45,7 +46,8 @@ static const struct argp ARGP = {
            "\v"
            "'lost' are replications whose worker is gone; the next run takes them up. The time "
            "left is that of the replications to come, at the mean time of those done, shared by "
-           "the workers running now.\n\n"
+           "the workers running now. Contacts without driver errors are the networks' own doing; a "
+           "warning stands where they are more than 5 % of the baseline's crashes.\n\n"
            "Example:\n"
            "  crashpulse status demo.db\n",
     .children = CHILDREN,
@@ -168,6 +170,24 @@ static cp_status print_summary(cp_store *store, cp_error *error)
     return CP_OK;
 }
 
+// What the networks do without driver errors, as far as it has been simulated.
+static cp_status print_backgrounds(cp_store *store, cp_error *error)
+{
+    cp_network_backgrounds backgrounds = {0};
+    cp_status status = cp_network_backgrounds_read(store, NULL, &backgrounds, error);
+    if (status == CP_OK && backgrounds.known > 0) {
+        printf("\nwithout driver errors or functions:\n");
+        for (size_t k = 0; k < backgrounds.count; k++) {
+            const cp_network_background *row = &backgrounds.row[k];
+            printf("  %s: %s\n", row->scenario, row->is_known ? row->text : "not simulated yet");
+            if (row->warning != NULL)
+                printf("    warning: %s\n", row->warning);
+        }
+    }
+    cp_network_backgrounds_destroy(&backgrounds);
+    return status;
+}
+
 cp_status cmd_status(int argc, char **argv, cp_error *error)
 {
     arguments a = {0};
@@ -181,6 +201,8 @@ cp_status cmd_status(int argc, char **argv, cp_error *error)
         status = print_summary(store, error);
     if (status == CP_OK && a.format == CP_FORMAT_TABLE)
         status = print_failures(store, error);
+    if (status == CP_OK && a.format == CP_FORMAT_TABLE)
+        status = print_backgrounds(store, error);
     cp_store_close(store);
     return status;
 }

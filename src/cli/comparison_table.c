@@ -180,6 +180,12 @@ static void print_wrapped(const char *text, FILE *file)
     fputc('\n', file);
 }
 
+void cp_comparison_print_paragraph(const char *text, FILE *file)
+{
+    fputc('\n', file);
+    print_wrapped(text, file);
+}
+
 cp_status cp_comparison_print_table(const cp_study_data *data, const cp_comparison *comparison,
                                     const char *heading_text, const char *answer, FILE *file,
                                     cp_error *error)

@@ -8,6 +8,7 @@
 #include "report/example_query.h"
 #include "report/gallery.h"
 #include "report/network.h"
+#include "report/network_background.h"
 #include "report/paired_points.h"
 #include "report/query_json.h"
 #include "report/slice_sample.h"
@@ -336,12 +337,25 @@ typedef struct page_parts {
     json_t *networks;
     json_t *gallery;
     json_t *pairs;
+    json_t *backgrounds;
     cp_corridor_pulses pulses;
     unsigned char *chosen;
     bool *drawn; /* of each crash */
     size_t frontal;
     double chance;
 } page_parts;
+
+static cp_status backgrounds_json(cp_store *store, json_t **list, cp_error *error)
+{
+    cp_network_backgrounds backgrounds;
+    cp_status status = cp_network_backgrounds_read(store, NULL, &backgrounds, error);
+    if (status == CP_OK) {
+        *list = cp_network_backgrounds_json(&backgrounds);
+        status = *list ? CP_OK : cp_fail_memory(error, "the data of a report");
+    }
+    cp_network_backgrounds_destroy(&backgrounds);
+    return status;
+}
 
 static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t baseline,
                             const cp_comparison_options *options, page_parts *p, char **answer_all,
@@ -365,6 +379,8 @@ static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t b
         status = cp_gallery_json(store, data, &p->gallery, error);
     if (status == CP_OK)
         status = cp_paired_points_json(data, p->drawn, &p->pairs, error);
+    if (status == CP_OK)
+        status = backgrounds_json(store, &p->backgrounds, error);
     return status;
 }
 
@@ -378,7 +394,7 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     cp_status status = make_parts(store, data, baseline, options, &p, answer_all, error);
     if (status == CP_OK) {
         *page = json_pack(
-            "{s:O, s:O, s:I, s:o, s:o, s:o, s:o, s:O, s:O, s:o, s:o, s:O, s:O, s:O, s:o, s:o}",
+            "{s:O, s:O, s:I, s:o, s:o, s:o, s:o, s:O, s:O, s:o, s:o, s:O, s:O, s:O, s:O, s:o, s:o}",
             "study", json_array_get(json_object_get(data->about, "study"), 0), "about", data->about,
             "unfinished", (json_int_t)data->unfinished, "scenarios", scenarios_json(data),
             "crash_types", texts_json(data->crash_type, frontal_types(data)), "variants",
@@ -388,8 +404,8 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
             json_pack("{s:f, s:o, s:I, s:I}", "chance", p.chance, "seed",
                       json_sprintf("%llu", (unsigned long long)data->seed), "frontal_crashes",
                       (json_int_t)p.frontal, "pulses", (json_int_t)CP_CORRIDOR_PULSES_MAX),
-            "networks", p.networks, "gallery", p.gallery, "pairs", p.pairs, "risks",
-            risks_json(data), "queries", queries_json());
+            "networks", p.networks, "gallery", p.gallery, "pairs", p.pairs, "backgrounds",
+            p.backgrounds, "risks", risks_json(data), "queries", queries_json());
         if (!*page)
             status = cp_fail_memory(error, "the data of a report");
     }
@@ -398,6 +414,7 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     json_decref(p.networks);
     json_decref(p.gallery);
     json_decref(p.pairs);
+    json_decref(p.backgrounds);
     cp_corridor_destroy(&p.pulses);
     free(p.chosen);
     free(p.drawn);

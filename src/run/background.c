@@ -7,12 +7,92 @@
 #include <math.h>
 #include <string.h>
 
-static const char *type_of(const cp_found_contact *found)
+// ---- simulating ----------------------------------------------------------------------------
+
+static cp_status add_contact(const cp_found_contact *found, cp_background_rows *rows,
+                             cp_error *error)
 {
-    if (!cp_found_is_crash(found))
-        return "";
-    return cp_crash_type_text(found->impact.side[0], found->impact.side[1]);
+    const cp_impact *impact = &found->impact;
+    cp_background_contact_row *row = cp_background_rows_add_contact(rows);
+    if (row == NULL)
+        return cp_fail_memory(error, "background");
+    *row = (cp_background_contact_row){.time_s = impact->time_s,
+                                       .contact_m = impact->contact_m,
+                                       .reason = found->found_as,
+                                       .crash_type = "",
+                                       .closing_speed_m_s = NAN,
+                                       .lateral_offset_m = NAN,
+                                       .angle_rad = NAN};
+    if (cp_found_is_crash(found)) {
+        cp_vehicle_model model = cp_vehicle_model_default();
+        cp_crash_description description = cp_impact_describe(impact, &model, &model);
+        row->crash_type = cp_crash_type_text(impact->side[0], impact->side[1]);
+        row->closing_speed_m_s = description.closing_speed_m_s;
+        row->lateral_offset_m = description.lateral_offset_m;
+        row->angle_rad = description.angle_rad;
+    }
+    for (int role = 0; role < 2; role++) {
+        row->vehicle[role] = strdup(sumo_bridge_vehicle_id(impact->vehicle[role]));
+        if (row->vehicle[role] == NULL)
+            return cp_fail_memory(error, "background");
+    }
+    return CP_OK;
 }
+
+static cp_status fill_rows(const cp_simulation *simulation, cp_background_rows *rows,
+                           cp_error *error)
+{
+    cp_exposure counted = cp_simulation_counted(simulation, &rows->simulated_s);
+    rows->vehicle_km = counted.vehicle_km;
+    rows->vehicle_h = counted.vehicle_h;
+    rows->departed = counted.departed;
+    rows->sumo_version = strdup(sumo_bridge_version());
+    rows->sumo_command_line = strdup(sumo_bridge_command_line());
+    if (rows->sumo_version == NULL || rows->sumo_command_line == NULL)
+        return cp_fail_memory(error, "background");
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < simulation->found_count; k++)
+        status = add_contact(&simulation->found[k], rows, error);
+    return status;
+}
+
+cp_status cp_background_run(const cp_background_options *options, cp_background_rows *rows,
+                            cp_cross_check *check, cp_error *error)
+{
+    // A study of one scenario without errors and one variant without functions, whose name, which
+    // files that SUMO writes begin with, no variant can have.
+    cp_study_scenario scenario = *options->scenario;
+    scenario.driver_errors = NULL;
+    scenario.driver_error_count = 0;
+    cp_study_variant variant = {.name = (char *)"@background"};
+    cp_study study = {.seed = options->seed,
+                      .step_length_s = options->step_length_s,
+                      .warmup_s = options->warmup_s,
+                      .stay_s = options->stay_s};
+    cp_simulation simulation = {0};
+    rows->scenario = options->network;
+    rows->seed = options->seed;
+    rows->step_length_s = options->step_length_s;
+    long long steps = llround(options->duration_s / options->step_length_s), done = 0;
+    cp_status status =
+        cp_simulation_begin(&study, &scenario, &variant, options->seed, &simulation, error);
+    while (status == CP_OK && done < steps &&
+           (done == 0 || !cp_traffic_finished(simulation.traffic))) {
+        status = cp_simulation_step(&simulation, error);
+        done++;
+    }
+    if (status == CP_OK)
+        status = fill_rows(&simulation, rows, error);
+    if (status == CP_OK) {
+        cp_cross_check_match(&simulation.check);
+        *check = simulation.check;
+        simulation.check = (cp_cross_check){0};
+    }
+    cp_simulation_end(&simulation);
+    return status;
+}
+
+// ---- telling -------------------------------------------------------------------------------
 
 // One more of a kind in a list of {key: word, key_2: word_2, count_key: number}.
 static void count(json_t *list, const char *key, const char *word, const char *key_2,
@@ -37,65 +117,35 @@ static void count(json_t *list, const char *key, const char *word, const char *k
     json_array_append_new(list, row);
 }
 
-static json_t *crash_json(const cp_found_contact *found)
+static json_t *crash_json(const cp_background_contact_row *contact)
 {
-    cp_vehicle_model model = cp_vehicle_model_default();
-    cp_crash_description description = cp_impact_describe(&found->impact, &model, &model);
-    return json_pack("{s:f, s:f, s:f, s:s, s:f, s:s, s:s}", "time_s", found->impact.time_s, "x_m",
-                     found->impact.contact_m.x, "y_m", found->impact.contact_m.y, "crash_type",
-                     type_of(found), "closing_speed_m_s", description.closing_speed_m_s,
-                     "vehicle_1", sumo_bridge_vehicle_id(found->impact.vehicle[0]), "vehicle_2",
-                     sumo_bridge_vehicle_id(found->impact.vehicle[1]));
+    return json_pack("{s:f, s:f, s:f, s:s, s:f, s:s, s:s}", "time_s", contact->time_s, "x_m",
+                     contact->contact_m.x, "y_m", contact->contact_m.y, "crash_type",
+                     contact->crash_type, "closing_speed_m_s", contact->closing_speed_m_s,
+                     "vehicle_1", contact->vehicle[0], "vehicle_2", contact->vehicle[1]);
 }
 
-static cp_status write_result(const cp_background_options *options, cp_simulation *simulation,
-                              double simulated_s, const char *result_path, cp_error *error)
+cp_status cp_background_write_json(const cp_background_rows *rows, const cp_cross_check *check,
+                                   const char *result_path, cp_error *error)
 {
     json_t *contacts = json_array(), *crashes = json_array(), *reports = json_array();
-    for (size_t k = 0; k < simulation->found_count; k++) {
-        const cp_found_contact *found = &simulation->found[k];
-        count(contacts, "reason", found->found_as, "crash_type", type_of(found), "contacts");
-        if (cp_found_is_crash(found))
-            json_array_append_new(crashes, crash_json(found));
+    for (size_t k = 0; k < rows->contact_count; k++) {
+        const cp_background_contact_row *contact = &rows->contact[k];
+        count(contacts, "reason", contact->reason, "crash_type", contact->crash_type, "contacts");
+        if (contact->crash_type[0] != '\0')
+            json_array_append_new(crashes, crash_json(contact));
     }
-    cp_cross_check_match(&simulation->check);
-    for (size_t k = 0; k < simulation->check.sumo_count; k++)
-        count(reports, "found_as", simulation->check.sumo[k].found_as, NULL, NULL, "collisions");
-
-    cp_exposure exposure = cp_traffic_exposure(simulation->traffic);
-    json_t *result = json_pack(
-        "{s:s, s:I, s:f, s:f, s:f, s:I, s:o, s:o, s:o}", "network", options->network, "seed",
-        (json_int_t)options->seed, "step_length_s", options->step_length_s, "simulated_s",
-        simulated_s, "vehicle_km", exposure.vehicle_km, "departed", (json_int_t)exposure.departed,
-        "contacts", contacts, "crashes", crashes, "sumo_collisions", reports);
+    for (size_t k = 0; k < check->sumo_count; k++)
+        count(reports, "found_as", check->sumo[k].found_as, NULL, NULL, "collisions");
+    json_t *result =
+        json_pack("{s:s, s:I, s:f, s:f, s:f, s:f, s:I, s:o, s:o, s:o}", "network", rows->scenario,
+                  "seed", (json_int_t)rows->seed, "step_length_s", rows->step_length_s,
+                  "simulated_s", rows->simulated_s, "vehicle_km", rows->vehicle_km, "vehicle_h",
+                  rows->vehicle_h, "departed", (json_int_t)rows->departed, "contacts", contacts,
+                  "crashes", crashes, "sumo_collisions", reports);
     if (result == NULL)
         return cp_fail_memory(error, "background");
     int failed = json_dump_file(result, result_path, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
     json_decref(result);
     return failed == 0 ? CP_OK : cp_fail(error, CP_IO_FAILED, "%s: cannot be written", result_path);
-}
-
-cp_status cp_background_run(const cp_background_options *options, const char *result_path,
-                            cp_error *error)
-{
-    // A study of one scenario without errors and one variant without functions.
-    cp_study_scenario scenario = *options->scenario;
-    scenario.driver_errors = NULL;
-    scenario.driver_error_count = 0;
-    cp_study_variant variant = {0};
-    cp_study study = {.seed = options->seed, .step_length_s = options->step_length_s};
-    cp_simulation simulation = {0};
-    long long steps = llround(options->duration_s / options->step_length_s), done = 0;
-    cp_status status =
-        cp_simulation_begin(&study, &scenario, &variant, options->seed, &simulation, error);
-    while (status == CP_OK && done < steps &&
-           (done == 0 || !cp_traffic_finished(simulation.traffic))) {
-        status = cp_simulation_step(&simulation, error);
-        done++;
-    }
-    if (status == CP_OK)
-        status = write_result(options, &simulation, (double)done * options->step_length_s,
-                              result_path, error);
-    cp_simulation_end(&simulation);
-    return status;
 }

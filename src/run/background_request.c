@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/wait.h>
@@ -16,26 +17,41 @@
 static cp_status run_worker(const cp_background_request *request, const char *result_path,
                             cp_error *error)
 {
-    char worker[PATH_SIZE], seed[32], step_length[32], duration[32], parent[32];
+    char worker[PATH_SIZE], result[PATH_SIZE + 32], parent[32];
+    char seed[64], step_length[64], duration[64];
     cp_child child;
     cp_child_end end;
     int wait_status = 0;
     cp_status status = cp_child_find_worker(request->worker_path, worker, sizeof worker, error);
     if (status != CP_OK)
         return status;
-    snprintf(seed, sizeof seed, "%" PRIu64, request->seed);
-    snprintf(step_length, sizeof step_length, "%.17g", request->step_length_s);
-    snprintf(duration, sizeof duration, "%.17g", request->duration_s);
     snprintf(parent, sizeof parent, "%ld", (long)getpid());
-    const char *arguments[20] = {"crashpulse-worker", "--parent",   parent,  "--background",
-                                 result_path,         "--seed",     seed,    "--step-length",
-                                 step_length,         "--duration", duration};
-    size_t count = 11;
+    snprintf(result, sizeof result, "--background=%s", result_path);
+    const char *arguments[20] = {"crashpulse-worker", "--parent", parent, result};
+    size_t count = 4;
+
+    // What a study has of its own is left to it.
+    if (request->seed != NULL) {
+        snprintf(seed, sizeof seed, "--seed=%" PRIu64, *request->seed);
+        arguments[count++] = seed;
+    }
+    if (!isnan(request->duration_s)) {
+        snprintf(duration, sizeof duration, "--duration=%.17g", request->duration_s);
+        arguments[count++] = duration;
+    }
+    if (request->scenario == NULL) {
+        snprintf(step_length, sizeof step_length, "--step-length=%.17g", request->step_length_s);
+        arguments[count++] = step_length;
+    }
     arguments[count++] = request->scenario != NULL ? "--study" : "--sumocfg";
     arguments[count++] = request->path;
     if (request->scenario != NULL) {
         arguments[count++] = "--scenario";
         arguments[count++] = request->scenario;
+    }
+    if (request->db_path != NULL) {
+        arguments[count++] = "--db";
+        arguments[count++] = request->db_path;
     }
     arguments[count] = NULL;
     status = cp_child_start(worker, arguments, &child, error);

@@ -9,11 +9,12 @@
 /* Have a worker process find the background of a network (run/background.h). */
 
 typedef struct cp_background_request {
-    const char *path;     /* a .sumocfg, or a study file with the scenario */
-    const char *scenario; /* NULL: path is a .sumocfg */
-    uint64_t seed;
-    double step_length_s; /* of a scenario the study's counts */
-    double duration_s;
+    const char *path;        /* a .sumocfg, or a study file with the scenario */
+    const char *scenario;    /* NULL: path is a .sumocfg */
+    const uint64_t *seed;    /* of a scenario: NULL: the study's */
+    double step_length_s;    /* of a .sumocfg */
+    double duration_s;       /* of a scenario: NAN: the study's */
+    const char *db_path;     /* of the study: the worker stores the result there too; may be NULL */
     const char *worker_path; /* NULL: beside the running executable */
 } cp_background_request;
 

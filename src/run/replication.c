@@ -34,27 +34,18 @@ static cp_status run_steps(replication_run *run, cp_error *error)
 {
     const cp_study *study = run->study;
     const cp_traffic *traffic = run->simulation.traffic;
-    long long steps = llround(study->duration_s / study->step_length_s);
-    long long warmup_steps = llround(study->warmup_s / study->step_length_s);
-    long long done = 0;
-    cp_exposure before = {0};
+    long long steps = llround(study->duration_s / study->step_length_s), done = 0;
     cp_status status = CP_OK;
     while (status == CP_OK && done < steps && (done == 0 || !cp_traffic_finished(traffic))) {
-        if (done == warmup_steps)
-            before = cp_traffic_exposure(traffic);
         status = step(run, error);
         done++;
     }
     if (status != CP_OK)
         return status;
-    if (done <= warmup_steps) // the traffic ended before it counted
-        before = cp_traffic_exposure(traffic);
-    cp_exposure after = cp_traffic_exposure(traffic);
-    long long counted = done > warmup_steps ? done - warmup_steps : 0;
-    run->results->simulated_s = (double)counted * study->step_length_s;
-    run->results->vehicle_km = after.vehicle_km - before.vehicle_km;
-    run->results->vehicle_h = after.vehicle_h - before.vehicle_h;
-    run->results->departed = after.departed - before.departed;
+    cp_exposure counted = cp_simulation_counted(&run->simulation, &run->results->simulated_s);
+    run->results->vehicle_km = counted.vehicle_km;
+    run->results->vehicle_h = counted.vehicle_h;
+    run->results->departed = counted.departed;
     return CP_OK;
 }
 

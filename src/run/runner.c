@@ -7,6 +7,7 @@
 #include "run/fleet.h"
 #include "run/owner.h"
 #include "run/worker.h"
+#include "store/background_rows.h"
 #include "store/claim.h"
 #include "store/query.h"
 
@@ -28,6 +29,7 @@
 // A worker and what it works on.
 typedef struct runner_job {
     cp_child child;
+    const cp_background_plan_row *background; /* NULL: a replication */
     int64_t replication_id;
 } runner_job;
 
@@ -44,6 +46,7 @@ typedef struct runner {
     int64_t *waiting; /* replications still to start: waiting[next ...] */
     size_t waiting_count;
     size_t next;
+    bool *background_missing; /* of each of plan.background: to run, by us, and not yet started */
     runner_job *jobs;
     size_t running;
     sigset_t old_mask;
@@ -70,9 +73,11 @@ static bool is_ours_by_id(const runner *run, int64_t replication_id)
     return row != NULL && is_ours(run, (size_t)(row - run->plan.replication));
 }
 
-// Of what waits, keep our share.
+// Of what waits, keep our share; backgrounds are dealt out in turn too.
 static void keep_ours(runner *run)
 {
+    for (size_t k = 0; k < run->plan.background_count; k++)
+        run->background_missing[k] &= is_ours(run, k);
     size_t kept = 0;
     for (size_t k = 0; k < run->waiting_count; k++)
         if (is_ours_by_id(run, run->waiting[k]))
@@ -101,7 +106,8 @@ static cp_status load_inputs(runner *run, cp_error *error)
         status = cp_plan_create(&run->study, run->fleet.rows, run->fleet.count, &run->plan, error);
     run->time_limit_s = run->options->time_limit_s;
     if (run->time_limit_s <= 0.0)
-        run->time_limit_s = fmax(SHORTEST_TIME_LIMIT_S, 10.0 * run->study.duration_s);
+        run->time_limit_s = fmax(SHORTEST_TIME_LIMIT_S,
+                                 10.0 * fmax(run->study.duration_s, run->study.background_s));
     for (size_t k = 0; k < run->plan.replication_count; k++)
         run->summary->replications += is_ours(run, k);
     return status;
@@ -145,6 +151,15 @@ static cp_status probe_scenarios(runner *run, cp_error *error)
     return status;
 }
 
+static cp_status find_backgrounds(runner *run, cp_error *error)
+{
+    run->background_missing =
+        calloc(run->plan.background_count + 1, sizeof *run->background_missing);
+    if (run->background_missing == NULL)
+        return cp_fail_memory(error, "backgrounds");
+    return cp_background_rows_missing(run->store, &run->plan, run->background_missing, error);
+}
+
 // Database, claims of the dead, plan, queue: in this order, so that what a dead worker held is
 // planned again before the plan is compared.
 static cp_status prepare_store(runner *run, cp_error *error)
@@ -160,6 +175,8 @@ static cp_status prepare_store(runner *run, cp_error *error)
         status = cp_plan_rows_write(run->store, &run->plan, error);
     if (status == CP_OK)
         status = cp_claim_waiting(run->store, &run->waiting, &run->waiting_count, error);
+    if (status == CP_OK)
+        status = find_backgrounds(run, error);
     if (status == CP_OK && run->options->shards > 0)
         keep_ours(run);
     if (status == CP_OK)
@@ -231,9 +248,44 @@ static cp_status wait_signal(runner *run, cp_error *error)
 
 // ---- jobs ----------------------------------------------------------------------------------
 
+// The next background to run; NULL when all are done or being run.
+static const cp_background_plan_row *next_background(const runner *run)
+{
+    for (size_t k = 0; k < run->plan.background_count; k++)
+        if (run->background_missing[k])
+            return &run->plan.background[k];
+    return NULL;
+}
+
+static cp_status start_background(runner *run, runner_job *job, cp_error *error)
+{
+    const cp_background_plan_row *row = next_background(run);
+    const char *arguments[] = {"crashpulse-worker",
+                               "--background",
+                               "--study",
+                               run->options->study_path,
+                               "--scenario",
+                               run->plan.scenario[row->scenario].name,
+                               "--db",
+                               run->options->db_path,
+                               "--expect",
+                               row->configuration_hash,
+                               "--parent",
+                               run->parent,
+                               NULL};
+    cp_status status = cp_child_start(run->worker_path, arguments, &job->child, error);
+    if (status != CP_OK)
+        return status;
+    job->background = row;
+    run->background_missing[row - run->plan.background] = false;
+    run->running++;
+    return CP_OK;
+}
+
 static cp_status start_job(runner *run, runner_job *job, cp_error *error)
 {
     char id[32];
+    job->background = NULL;
     job->replication_id = run->waiting[run->next];
     snprintf(id, sizeof id, "%" PRId64, job->replication_id);
     const char *arguments[] = {"crashpulse-worker",
@@ -257,9 +309,14 @@ static cp_status start_job(runner *run, runner_job *job, cp_error *error)
 static cp_status start_jobs(runner *run, cp_error *error)
 {
     cp_status status = CP_OK;
-    for (size_t k = 0; status == CP_OK && k < run->options->jobs; k++)
-        if (run->jobs[k].child.pid == 0 && run->next < run->waiting_count)
+    for (size_t k = 0; status == CP_OK && k < run->options->jobs; k++) {
+        if (run->jobs[k].child.pid != 0)
+            continue;
+        if (next_background(run) != NULL)
+            status = start_background(run, &run->jobs[k], error);
+        else if (run->next < run->waiting_count)
             status = start_job(run, &run->jobs[k], error);
+    }
     return status;
 }
 
@@ -293,11 +350,25 @@ static cp_status record_failure(runner *run, int64_t replication_id, pid_t pid,
     return status;
 }
 
+static void conclude_background(runner *run, const runner_job *job, const cp_child_end *end)
+{
+    if (end->exit_code == 0) {
+        run->summary->backgrounds_done++;
+        return;
+    }
+    run->summary->backgrounds_failed++;
+    if (run->first_failure[0] == '\0')
+        snprintf(run->first_failure, sizeof run->first_failure, "background of scenario %s: %.300s",
+                 run->plan.scenario[job->background->scenario].name, end->reason);
+}
+
 static cp_status conclude_job(runner *run, const runner_job *job, pid_t pid,
                               const cp_child_end *end, cp_error *error)
 {
     run->running--;
-    if (end->exit_code == 0)
+    if (job->background != NULL)
+        conclude_background(run, job, end);
+    else if (end->exit_code == 0)
         run->summary->done_now++;
     else if (end->exit_code == CP_WORKER_EXIT_ELSEWHERE)
         run->summary->elsewhere++;
@@ -381,6 +452,9 @@ static void stop_jobs(runner *run)
         if (pid == 0)
             continue;
         cp_child_kill(&job->child, NULL, &end);
+        run->running--;
+        if (job->background != NULL)
+            continue;
         cp_status status =
             cp_claim_end_of(run->store, job->replication_id, run->self.host, pid,
                             CP_CLAIM_INTERRUPTED, end.wall_time_s, NULL, &ended, &ignored);
@@ -388,7 +462,6 @@ static void stop_jobs(runner *run)
             cp_log_warning("%s", ignored.text);
         if (end.exit_code == 0)
             run->summary->done_now++;
-        run->running--;
     }
 }
 
@@ -431,6 +504,11 @@ static cp_status conclude(runner *run, cp_error *error)
                        "interrupted with %zu of %zu replications done; the same command goes on "
                        "from there",
                        summary->done_before + summary->done_now, summary->replications);
+    if (summary->failed == 0 && summary->backgrounds_failed > 0)
+        return cp_fail(error, CP_RUN_FAILED,
+                       "%zu of the networks' backgrounds failed (the same command tries them "
+                       "again); the first: %s",
+                       summary->backgrounds_failed, run->first_failure);
     if (summary->failed > 0)
         return cp_fail(error, CP_RUN_FAILED,
                        "%zu of %zu replications failed (why: table attempt, column message; the "
@@ -462,6 +540,7 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
     end_signals(&run);
     free(run.jobs);
     free(run.waiting);
+    free(run.background_missing);
     cp_store_close(run.store);
     cp_plan_destroy(&run.plan);
     cp_fleet_destroy(&run.fleet);

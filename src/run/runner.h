@@ -26,20 +26,25 @@ typedef struct cp_runner_summary {
     size_t replications; /* planned by the study file, of this shard */
     size_t done_before;  /* finished by earlier runs */
     size_t done_now;
-    size_t failed;    /* tried in this run without success */
-    size_t elsewhere; /* claimed by another run that is still going on */
-    size_t crashes;   /* in the database, all finished replications together */
+    size_t failed;           /* tried in this run without success */
+    size_t elsewhere;        /* claimed by another run that is still going on */
+    size_t crashes;          /* in the database, all finished replications together */
+    size_t backgrounds_done; /* of networks, now (run/background.h) */
+    size_t backgrounds_failed;
     double wall_time_s;
 } cp_runner_summary;
 
-/* Run what is missing of the study. Bad input (study, vehicles, SUMO configuration) is found before
+/* Run what is missing of the study: the backgrounds of its networks first, then replications. Bad
+ * input (study, vehicles, SUMO configuration) is found before
  * the database is created. A replication whose worker fails is marked failed, with SUMO's last
- * words in attempt.message, and the others go on; the next run tries it again. SIGINT and SIGTERM
+ * words in attempt.message, and the others go on; the next run tries it again, and so with a
+ * background, whose failure only this run tells. SIGINT and SIGTERM
  * end the workers and return CP_INTERRUPTED; the next run completes the study.
  *
  * The summary is filled as far as it is known. Errors: CP_BAD_INPUT, also for a database with
  * finished replications of another configuration (the difference is named); CP_RUN_FAILED when
- * replications failed; CP_INTERRUPTED; CP_STORE_FAILED, CP_BUSY, CP_IO_FAILED, CP_NO_MEMORY. */
+ * replications or backgrounds failed; CP_INTERRUPTED; CP_STORE_FAILED, CP_BUSY, CP_IO_FAILED,
+ * CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *summary,
                                       cp_error *error);
 

@@ -73,6 +73,7 @@ cp_status cp_simulation_begin(const cp_study *study, const cp_study_scenario *sc
     if (status != CP_OK)
         return status;
     simulation->counted_from_s = cp_traffic_time_s(simulation->traffic) + study->warmup_s;
+    simulation->warmup_steps = llround(study->warmup_s / study->step_length_s);
     simulation->stay_s = study->stay_s;
     return CP_OK;
 }
@@ -251,6 +252,8 @@ static cp_status take_sumo_collisions(cp_simulation *simulation, cp_error *error
 
 cp_status cp_simulation_step(cp_simulation *simulation, cp_error *error)
 {
+    if (simulation->steps++ == simulation->warmup_steps)
+        simulation->warmup_exposure = cp_traffic_exposure(simulation->traffic);
     cp_status status = cp_traffic_step(simulation->traffic, error);
     if (status == CP_OK)
         status = cp_controls_step(simulation->controls, error);
@@ -269,4 +272,19 @@ cp_status cp_simulation_step(cp_simulation *simulation, cp_error *error)
                      ? cp_traffic_hold(simulation->traffic, simulation->crashed[k], until_s, error)
                      : cp_traffic_remove(simulation->traffic, simulation->crashed[k], error);
     return status;
+}
+
+cp_exposure cp_simulation_counted(const cp_simulation *simulation, double *simulated_s)
+{
+    // A traffic that ended before it counted.
+    *simulated_s = 0.0;
+    if (simulation->steps <= simulation->warmup_steps)
+        return (cp_exposure){0};
+    cp_exposure all = cp_traffic_exposure(simulation->traffic);
+    const cp_exposure *before = &simulation->warmup_exposure;
+    *simulated_s = (double)(simulation->steps - simulation->warmup_steps) *
+                   cp_traffic_step_length_s(simulation->traffic);
+    return (cp_exposure){.vehicle_km = all.vehicle_km - before->vehicle_km,
+                         .vehicle_h = all.vehicle_h - before->vehicle_h,
+                         .departed = all.departed - before->departed};
 }

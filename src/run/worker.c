@@ -10,7 +10,12 @@
 #include "run/vehicle_types.h"
 #include "store/claim.h"
 #include "store/stored_crash.h"
+#include "study/plan.h"
 #include "study/scenario_files.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 // Claim with a connection of its own: none stays open while the replication runs.
 static cp_status claim(const char *db_path, const cp_replication_row *replication, int *attempt,
@@ -110,32 +115,87 @@ cp_status cp_worker_probe(const char *study_path, const char *scenario, cp_error
     return status;
 }
 
-cp_status cp_worker_background(const char *path, const char *scenario, uint64_t seed,
-                               double step_length_s, double duration_s, const char *result_path,
-                               cp_error *error)
+// ---- backgrounds ---------------------------------------------------------------------------
+
+// Before minutes of simulation: has the database a place for the result?
+static cp_status check_place(const cp_background_job *job, cp_error *error)
 {
-    cp_study study = {0};
-    cp_study_scenario bare = {.sumocfg_path = (char *)path};
-    cp_background_options options = {.network = path,
-                                     .scenario = &bare,
-                                     .seed = seed,
-                                     .step_length_s = step_length_s,
-                                     .duration_s = duration_s};
-    cp_status status = CP_OK;
-    if (scenario != NULL) {
-        status = cp_study_load(path, &study, error);
-        if (status != CP_OK)
-            return status;
-        options.network = scenario;
-        options.scenario = cp_study_find_scenario(&study, scenario);
-        options.step_length_s = study.step_length_s;
-        if (options.scenario == NULL)
-            status = cp_fail(error, CP_BAD_INPUT, "%s: has no scenario '%s'", path, scenario);
-    } else {
-        status = cp_scenario_loads_no_state(path, error);
-    }
+    cp_store *store = NULL;
+    if (job->db_path == NULL)
+        return CP_OK;
+    cp_status status = cp_store_open(job->db_path, CP_STORE_WRITE, &store, error);
     if (status == CP_OK)
-        status = cp_background_run(&options, result_path, error);
+        status = cp_background_rows_check(store, job->scenario, error);
+    cp_store_close(store);
+    return status;
+}
+
+static cp_status run_background(const cp_background_job *job, const cp_background_options *options,
+                                const char *configuration_hash, cp_error *error)
+{
+    cp_background_rows rows = {0};
+    cp_cross_check check = {0};
+    cp_store *store = NULL;
+    snprintf(rows.configuration_hash, sizeof rows.configuration_hash, "%s", configuration_hash);
+    cp_status status = check_place(job, error);
+    if (status == CP_OK)
+        status = cp_background_run(options, &rows, &check, error);
+    if (status == CP_OK && job->db_path != NULL) {
+        status = cp_store_open(job->db_path, CP_STORE_WRITE, &store, error);
+        if (status == CP_OK)
+            status = cp_background_rows_write(store, &rows, error);
+        cp_store_close(store);
+    }
+    if (status == CP_OK && job->result_path != NULL)
+        status = cp_background_write_json(&rows, &check, job->result_path, error);
+    cp_cross_check_destroy(&check);
+    cp_background_rows_destroy(&rows);
+    return status;
+}
+
+static cp_status study_background(const cp_background_job *job, const cp_study *study,
+                                  cp_error *error)
+{
+    cp_background_plan_row own;
+    const cp_study_scenario *scenario = cp_study_find_scenario(study, job->scenario);
+    if (scenario == NULL)
+        return cp_fail(error, CP_BAD_INPUT, "%s: has no scenario '%s'", job->path, job->scenario);
+    cp_status status =
+        cp_plan_background(study, (size_t)(scenario - study->scenarios), &own, error);
+    if (status != CP_OK)
+        return status;
+    if (job->expected_hash != NULL && strcmp(job->expected_hash, own.configuration_hash) != 0)
+        return cp_fail(error, CP_BAD_INPUT, "%s: was changed during the run", job->path);
+
+    // The study's own run, unless seed or length are others.
+    cp_background_options options = {.network = scenario->name,
+                                     .scenario = scenario,
+                                     .seed = job->seed != NULL ? *job->seed : own.seed,
+                                     .step_length_s = study->step_length_s,
+                                     .duration_s =
+                                         isnan(job->duration_s) ? own.duration_s : job->duration_s,
+                                     .warmup_s = study->warmup_s,
+                                     .stay_s = study->stay_s};
+    bool is_own = options.seed == own.seed && options.duration_s == own.duration_s;
+    return run_background(job, &options, is_own ? own.configuration_hash : "", error);
+}
+
+cp_status cp_worker_background(const cp_background_job *job, cp_error *error)
+{
+    if (job->scenario == NULL) {
+        cp_study_scenario bare = {.sumocfg_path = (char *)job->path};
+        cp_background_options options = {.network = job->path,
+                                         .scenario = &bare,
+                                         .seed = *job->seed,
+                                         .step_length_s = job->step_length_s,
+                                         .duration_s = job->duration_s};
+        cp_status loads = cp_scenario_loads_no_state(job->path, error);
+        return loads == CP_OK ? run_background(job, &options, "", error) : loads;
+    }
+    cp_study study = {0};
+    cp_status status = cp_study_load(job->path, &study, error);
+    if (status == CP_OK)
+        status = study_background(job, &study, error);
     cp_study_destroy(&study);
     return status;
 }

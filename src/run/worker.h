@@ -6,8 +6,8 @@
 
 #include <stdint.h>
 
-/* What a worker process does: one replication, or one probe. SUMO allows one simulation a process
- * and may abort it; so whatever happens here happens to this process only. */
+/* What a worker process does: one replication, one background, or one probe. SUMO allows one
+ * simulation a process and may abort it; so whatever happens here happens to this process only. */
 
 /* Exit code of a worker that found its replication taken or finished by somebody else. */
 #define CP_WORKER_EXIT_ELSEWHERE 3
@@ -23,10 +23,21 @@ CP_MUST_CHECK cp_status cp_worker_run(const char *study_path, const char *db_pat
 CP_MUST_CHECK cp_status cp_worker_probe(const char *study_path, const char *scenario,
                                         cp_error *error);
 
-/* The background of a network (run/background.h): of a .sumocfg, or of a scenario of a study (its
- * configuration, options and step length; scenario NULL: the .sumocfg itself). Result as JSON. */
-CP_MUST_CHECK cp_status cp_worker_background(const char *path, const char *scenario, uint64_t seed,
-                                             double step_length_s, double duration_s,
-                                             const char *result_path, cp_error *error);
+/* The background of a network (run/background.h): of a .sumocfg, or of a scenario of a study, with
+ * its configuration, options, step length, warm-up and time that crashed cars stay. */
+typedef struct cp_background_job {
+    const char *path;          /* a .sumocfg, or the study file with the scenario */
+    const char *scenario;      /* NULL: path is a .sumocfg */
+    const uint64_t *seed;      /* NULL: the study's */
+    double step_length_s;      /* of a .sumocfg */
+    double duration_s;         /* NAN: the study's */
+    const char *expected_hash; /* the study's own run must have this configuration; may be NULL */
+    const char *db_path;       /* of the study, for the result; NULL: not stored */
+    const char *result_path;   /* for the result as JSON; NULL: nowhere */
+} cp_background_job;
+
+/* Run and commit it. The database is closed meanwhile. Errors: CP_BAD_INPUT, also for a scenario
+ * that study or database do not have, or a configuration that has changed. */
+CP_MUST_CHECK cp_status cp_worker_background(const cp_background_job *job, cp_error *error);
 
 #endif

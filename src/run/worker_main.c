@@ -5,7 +5,9 @@
 #include <argp.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <math.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
@@ -18,6 +20,7 @@ typedef struct worker_arguments {
     const char *probe;
     const char *parent;
     const char *background; /* where its result goes */
+    const char *expect;
     const char *sumocfg;
     const char *scenario;
     const char *seed;
@@ -31,12 +34,14 @@ static const struct argp_option OPTIONS[] = {
     {"replication", 'r', "ID", 0, "Row id of the replication to run", 0},
     {"probe", 'p', "SCENARIO", 0, "Only see whether this scenario starts", 0},
     {"parent", 'P', "PID", 0, "Process that must be alive for this one to go on", 0},
-    {"background", 'b', "RESULT", 0, "Run without driver errors, result into this file", 0},
+    {"background", 'b', "RESULT", OPTION_ARG_OPTIONAL,
+     "Run without driver errors, result into this file or the database", 0},
     {"sumocfg", 'c', "FILE", 0, "of this configuration", 0},
     {"scenario", 'n', "NAME", 0, "or of this scenario of the study", 0},
-    {"seed", 'S', "N", 0, "with this seed", 0},
-    {"step-length", 'l', "S", 0, "and this step length", 0},
-    {"duration", 't', "S", 0, "for this long", 0},
+    {"seed", 'S', "N", 0, "with this seed (default: the study's)", 0},
+    {"step-length", 'l', "S", 0, "and this step length, of a configuration", 0},
+    {"duration", 't', "S", 0, "for this long (default: the study's)", 0},
+    {"expect", 'e', "HASH", 0, "if the study's run has this configuration", 0},
     {0}};
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
@@ -59,7 +64,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         arguments->parent = argument;
         return 0;
     case 'b':
-        arguments->background = argument;
+        arguments->background = argument != NULL ? argument : "";
         return 0;
     case 'c':
         arguments->sumocfg = argument;
@@ -76,15 +81,19 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case 't':
         arguments->duration = argument;
         return 0;
+    case 'e':
+        arguments->expect = argument;
+        return 0;
     case ARGP_KEY_END:
         if (arguments->background != NULL) {
-            if ((arguments->sumocfg == NULL) == (arguments->study == NULL) ||
-                (arguments->study == NULL) != (arguments->scenario == NULL) ||
-                arguments->seed == NULL || arguments->step_length == NULL ||
-                arguments->duration == NULL)
-                argp_error(state,
-                           "--background needs --sumocfg, or --study and --scenario; --seed, "
-                           "--step-length and --duration");
+            bool is_bare = arguments->sumocfg != NULL && arguments->study == NULL &&
+                           arguments->scenario == NULL && arguments->seed != NULL &&
+                           arguments->step_length != NULL && arguments->duration != NULL;
+            bool is_of_study = arguments->sumocfg == NULL && arguments->study != NULL &&
+                               arguments->scenario != NULL;
+            if (!is_bare && !is_of_study)
+                argp_error(state, "--background needs --study and --scenario; or --sumocfg, "
+                                  "--seed, --step-length and --duration");
             return 0;
         }
         if (arguments->study == NULL ||
@@ -115,10 +124,18 @@ static int follow_parent(const char *parent)
 
 static cp_status run_background(const worker_arguments *arguments, cp_error *error)
 {
-    return cp_worker_background(arguments->sumocfg != NULL ? arguments->sumocfg : arguments->study,
-                                arguments->scenario, strtoull(arguments->seed, NULL, 10),
-                                strtod(arguments->step_length, NULL),
-                                strtod(arguments->duration, NULL), arguments->background, error);
+    uint64_t seed = arguments->seed != NULL ? strtoull(arguments->seed, NULL, 10) : 0;
+    cp_background_job job = {
+        .path = arguments->sumocfg != NULL ? arguments->sumocfg : arguments->study,
+        .scenario = arguments->scenario,
+        .seed = arguments->seed != NULL ? &seed : NULL,
+        .step_length_s =
+            arguments->step_length != NULL ? strtod(arguments->step_length, NULL) : NAN,
+        .duration_s = arguments->duration != NULL ? strtod(arguments->duration, NULL) : NAN,
+        .expected_hash = arguments->expect,
+        .db_path = arguments->db,
+        .result_path = arguments->background[0] != '\0' ? arguments->background : NULL};
+    return cp_worker_background(&job, error);
 }
 
 static int finish(cp_status status, int elsewhere, const cp_error *error)

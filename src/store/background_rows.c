@@ -3,6 +3,40 @@
 
 #include "store/store_sqlite.h"
 
+#include <stdlib.h>
+#include <string.h>
+
+// ---- collecting ----------------------------------------------------------------------------
+
+cp_background_contact_row *cp_background_rows_add_contact(cp_background_rows *rows)
+{
+    // Room doubles whenever the count is a power of two.
+    if ((rows->contact_count & (rows->contact_count - 1)) == 0) {
+        size_t room = rows->contact_count == 0 ? 1 : 2 * rows->contact_count;
+        cp_background_contact_row *larger = realloc(rows->contact, room * sizeof *larger);
+        if (larger == NULL)
+            return NULL;
+        rows->contact = larger;
+    }
+    cp_background_contact_row *added = &rows->contact[rows->contact_count++];
+    *added = (cp_background_contact_row){0};
+    return added;
+}
+
+void cp_background_rows_destroy(cp_background_rows *rows)
+{
+    for (size_t k = 0; k < rows->contact_count; k++) {
+        free(rows->contact[k].vehicle[0]);
+        free(rows->contact[k].vehicle[1]);
+    }
+    free(rows->contact);
+    free(rows->sumo_version);
+    free(rows->sumo_command_line);
+    *rows = (cp_background_rows){0};
+}
+
+// ---- writing -------------------------------------------------------------------------------
+
 static cp_status find_scenario(cp_store *store, const char *name, int64_t *id, cp_error *error)
 {
     cp_statement s;
@@ -22,45 +56,85 @@ static cp_status find_scenario(cp_store *store, const char *name, int64_t *id, c
     return status;
 }
 
+// The same run again, and what was the study's own before.
 static cp_status delete_earlier(cp_store *store, int64_t scenario, const cp_background_rows *rows,
                                 cp_error *error)
 {
+    static const char *const SQL[] = {
+        "DELETE FROM background_contact WHERE scenario_id = ?1 AND (seed, step_length_s) IN "
+        "(SELECT seed, step_length_s FROM background_run WHERE scenario_id = ?1 AND ((seed = ?2 "
+        "AND step_length_s = ?3) OR (?4 <> '' AND configuration_hash <> '')))",
+        "DELETE FROM background_run WHERE scenario_id = ?1 AND ((seed = ?2 AND step_length_s = "
+        "?3) OR (?4 <> '' AND configuration_hash <> ''))"};
+    cp_status status = CP_OK;
+    for (int k = 0; k < 2 && status == CP_OK; k++) {
+        cp_statement s;
+        status = cp_statement_prepare(store, "replacing a background", SQL[k], &s, error);
+        cp_bind_integer(&s, 1, scenario);
+        cp_bind_integer(&s, 2, (int64_t)rows->seed);
+        cp_bind_real(&s, 3, rows->step_length_s);
+        cp_bind_text(&s, 4, rows->configuration_hash);
+        if (status == CP_OK)
+            status = cp_statement_run(&s, error);
+        cp_statement_finish(&s);
+    }
+    return status;
+}
+
+static cp_status insert_run(cp_store *store, int64_t scenario, const cp_background_rows *rows,
+                            cp_error *error)
+{
     cp_statement s;
-    cp_status status = cp_statement_prepare(
-        store, "replacing a background",
-        "DELETE FROM background WHERE scenario_id = ?1 AND seed = ?2 AND step_length_s = ?3", &s,
-        error);
+    cp_status status =
+        cp_statement_prepare(store, "writing a background",
+                             "INSERT INTO background_run (scenario_id, seed, step_length_s, "
+                             "simulated_s, vehicle_km, vehicle_h, departed, configuration_hash, "
+                             "crashpulse_version, sumo_version, sumo_command_line) VALUES (?1, ?2, "
+                             "?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)",
+                             &s, error);
     cp_bind_integer(&s, 1, scenario);
     cp_bind_integer(&s, 2, (int64_t)rows->seed);
     cp_bind_real(&s, 3, rows->step_length_s);
+    cp_bind_real(&s, 4, rows->simulated_s);
+    cp_bind_real(&s, 5, rows->vehicle_km);
+    cp_bind_real(&s, 6, rows->vehicle_h);
+    cp_bind_integer(&s, 7, (int64_t)rows->departed);
+    cp_bind_text(&s, 8, rows->configuration_hash);
+    cp_bind_text(&s, 9, CRASHPULSE_VERSION);
+    cp_bind_text(&s, 10, rows->sumo_version);
+    cp_bind_text(&s, 11, rows->sumo_command_line);
     if (status == CP_OK)
         status = cp_statement_run(&s, error);
     cp_statement_finish(&s);
     return status;
 }
 
-static cp_status insert(cp_store *store, int64_t scenario, const cp_background_rows *rows,
-                        cp_error *error)
+static cp_status insert_contacts(cp_store *store, int64_t scenario, const cp_background_rows *rows,
+                                 cp_error *error)
 {
-    static const cp_background_contact NONE = {"none", "", 0};
-    const cp_background_contact *contacts = rows->count > 0 ? rows->contacts : &NONE;
-    size_t count = rows->count > 0 ? rows->count : 1;
     cp_statement s;
-    cp_status status =
-        cp_statement_prepare(store, "writing a background",
-                             "INSERT INTO background (scenario_id, seed, step_length_s, "
-                             "simulated_s, vehicle_km, reason, "
-                             "crash_type, contacts) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
-                             &s, error);
-    for (size_t k = 0; k < count && status == CP_OK; k++) {
+    cp_status status = cp_statement_prepare(
+        store, "writing a background",
+        "INSERT INTO background_contact (scenario_id, seed, step_length_s, number, time_s, x_m, "
+        "y_m, reason, crash_type, closing_speed_m_s, lateral_offset_m, angle_rad, vehicle_1, "
+        "vehicle_2) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14)",
+        &s, error);
+    for (size_t k = 0; k < rows->contact_count && status == CP_OK; k++) {
+        const cp_background_contact_row *contact = &rows->contact[k];
         cp_bind_integer(&s, 1, scenario);
         cp_bind_integer(&s, 2, (int64_t)rows->seed);
         cp_bind_real(&s, 3, rows->step_length_s);
-        cp_bind_real(&s, 4, rows->simulated_s);
-        cp_bind_real(&s, 5, rows->vehicle_km);
-        cp_bind_text(&s, 6, contacts[k].reason);
-        cp_bind_text(&s, 7, contacts[k].crash_type);
-        cp_bind_integer(&s, 8, contacts[k].contacts);
+        cp_bind_integer(&s, 4, (int64_t)k);
+        cp_bind_real(&s, 5, contact->time_s);
+        cp_bind_real(&s, 6, contact->contact_m.x);
+        cp_bind_real(&s, 7, contact->contact_m.y);
+        cp_bind_text(&s, 8, contact->reason);
+        cp_bind_text(&s, 9, contact->crash_type);
+        cp_bind_real(&s, 10, contact->closing_speed_m_s);
+        cp_bind_real(&s, 11, contact->lateral_offset_m);
+        cp_bind_real(&s, 12, contact->angle_rad);
+        cp_bind_text(&s, 13, contact->vehicle[0]);
+        cp_bind_text(&s, 14, contact->vehicle[1]);
         status = cp_statement_run(&s, error);
     }
     cp_statement_finish(&s);
@@ -71,15 +145,51 @@ cp_status cp_background_rows_write(cp_store *store, const cp_background_rows *ro
 {
     int64_t scenario = 0;
     cp_status status = cp_store_begin(store, error);
-    if (status == CP_OK)
-        status = find_scenario(store, rows->scenario, &scenario, error);
+    if (status != CP_OK)
+        return status;
+    status = find_scenario(store, rows->scenario, &scenario, error);
     if (status == CP_OK)
         status = delete_earlier(store, scenario, rows, error);
     if (status == CP_OK)
-        status = insert(store, scenario, rows, error);
+        status = insert_run(store, scenario, rows, error);
+    if (status == CP_OK)
+        status = insert_contacts(store, scenario, rows, error);
     if (status == CP_OK)
         status = cp_store_commit(store, error);
     if (status != CP_OK)
         cp_store_rollback(store);
+    return status;
+}
+
+// ---- looking -------------------------------------------------------------------------------
+
+cp_status cp_background_rows_check(cp_store *store, const char *scenario, cp_error *error)
+{
+    int64_t id = 0;
+    return find_scenario(store, scenario, &id, error);
+}
+
+cp_status cp_background_rows_missing(cp_store *store, const cp_plan_rows *plan, bool *missing,
+                                     cp_error *error)
+{
+    cp_statement s;
+    cp_status status = cp_statement_prepare(
+        store, "reading the backgrounds",
+        "SELECT count(*) FROM background_run AS b JOIN scenario AS s ON s.id = b.scenario_id WHERE "
+        "s.name = ?1 AND b.configuration_hash = ?2",
+        &s, error);
+    for (size_t k = 0; status == CP_OK && k < plan->background_count; k++) {
+        const cp_background_plan_row *row = &plan->background[k];
+        int found = 0;
+        cp_bind_text(&s, 1, plan->scenario[row->scenario].name);
+        cp_bind_text(&s, 2, row->configuration_hash);
+        status = cp_statement_row(&s, &found, error);
+        missing[k] = status == CP_OK && sqlite3_column_int(s.handle, 0) == 0;
+        // To its end, ready for the next.
+        while (status == CP_OK && found)
+            status = cp_statement_row(&s, &found, error);
+        sqlite3_reset(s.handle);
+    }
+    cp_statement_finish(&s);
     return status;
 }

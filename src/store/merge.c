@@ -101,6 +101,23 @@ static cp_status check_none(cp_store *store, const char *path, const char *sql, 
     return status;
 }
 
+// Backgrounds of the same configuration are the same.
+static cp_status check_backgrounds(cp_store *store, const char *path, cp_error *error)
+{
+    static const char RESULTS[] =
+        "SELECT s.name, 'background', '' FROM part.background_run AS p JOIN main.background_run AS "
+        "r USING (scenario_id, seed, step_length_s, configuration_hash) JOIN main.scenario AS s ON "
+        "s.id = p.scenario_id WHERE configuration_hash <> '' AND ((p.simulated_s, p.vehicle_km, "
+        "p.vehicle_h, p.departed) IS NOT (r.simulated_s, r.vehicle_km, r.vehicle_h, r.departed) OR "
+        "(SELECT json_group_array(json_array(time_s, reason, vehicle_1, vehicle_2)) FROM (SELECT * "
+        "FROM part.background_contact AS c WHERE (c.scenario_id, c.seed, c.step_length_s) = "
+        "(p.scenario_id, p.seed, p.step_length_s) ORDER BY number)) <> "
+        "(SELECT json_group_array(json_array(time_s, reason, vehicle_1, vehicle_2)) FROM (SELECT * "
+        "FROM main.background_contact AS c WHERE (c.scenario_id, c.seed, c.step_length_s) = "
+        "(p.scenario_id, p.seed, p.step_length_s) ORDER BY number))) LIMIT 1";
+    return check_none(store, path, RESULTS, "has other results than in", error);
+}
+
 static cp_status check_replications(cp_store *store, const char *path, cp_error *error)
 {
     static const char CONFIGURATION[] =
@@ -197,6 +214,21 @@ static cp_status take_attempts(cp_store *store, cp_error *error)
         "a.process_start AND m.started = a.started)");
 }
 
+// Backgrounds that are not here, of scenarios that are.
+static cp_status take_backgrounds(cp_store *store, cp_error *error)
+{
+    static const char *const TABLE[] = {"background_contact", "background_run"};
+    cp_status status = CP_OK;
+    for (int k = 0; status == CP_OK && k < 2; k++)
+        status = run_sql(store, error,
+                         "INSERT INTO main.%s SELECT * FROM part.%s AS p WHERE scenario_id IN "
+                         "(SELECT id FROM main.scenario) AND NOT EXISTS (SELECT 1 FROM "
+                         "main.background_run AS r WHERE (r.scenario_id, r.seed, r.step_length_s) "
+                         "= (p.scenario_id, p.seed, p.step_length_s))",
+                         TABLE[k], TABLE[k]);
+    return status;
+}
+
 static cp_status take_all(cp_store *store, const char *path, cp_merge_count *count, cp_error *error)
 {
     int64_t studies = 0, taken = 0, done = 0;
@@ -207,6 +239,8 @@ static cp_status take_all(cp_store *store, const char *path, cp_merge_count *cou
         status = check_study(store, path, error);
     if (status == CP_OK)
         status = check_replications(store, path, error);
+    if (status == CP_OK)
+        status = check_backgrounds(store, path, error);
     if (status == CP_OK)
         status = cp_store_execute(
             store, "merging",
@@ -225,6 +259,8 @@ static cp_status take_all(cp_store *store, const char *path, cp_merge_count *cou
         status = take_replications(store, error);
     if (status == CP_OK)
         status = take_attempts(store, error);
+    if (status == CP_OK)
+        status = take_backgrounds(store, error);
     if (status == CP_OK && taken > 0)
         status = run_sql(store, error,
                          "INSERT INTO main.merge_source (database, merged, replications) VALUES "

@@ -14,10 +14,10 @@ typedef struct cp_merge_count {
 } cp_merge_count;
 
 /* Take over the finished replications of the database at path: rows of every table that names a
- * replication or a crash, attempts included, in one transaction; the plan too when store is empty.
- * Merging the same again changes nothing. Errors: CP_BAD_INPUT when path is no database, is of
- * another version, holds another study or another configuration of it (named), or other results of
- * a replication that is here too; CP_BUSY, CP_STORE_FAILED. */
+ * replication or a crash, attempts included, and backgrounds of networks, in one transaction; the
+ * plan too when store is empty. Merging the same again changes nothing. Errors: CP_BAD_INPUT when
+ * path is no database, is of another version, holds another study or another configuration of it
+ * (named), or other results of a replication that is here too; CP_BUSY, CP_STORE_FAILED. */
 CP_MUST_CHECK cp_status cp_merge(cp_store *store, const char *path, cp_merge_count *count,
                                  cp_error *error);
 

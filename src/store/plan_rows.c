@@ -339,7 +339,9 @@ static const char EXCHANGE[] =
     "SELECT id, scenario_id, variant_id, number, seed, hash FROM temp.plan WHERE true "
     "ON CONFLICT (id) DO UPDATE SET number = excluded.number, "
     "configuration_hash = excluded.configuration_hash;"
-    "DELETE FROM background WHERE scenario_id NOT IN (SELECT scenario_id FROM replication);"
+    "DELETE FROM background_contact WHERE scenario_id NOT IN (SELECT scenario_id FROM "
+    "replication);"
+    "DELETE FROM background_run WHERE scenario_id NOT IN (SELECT scenario_id FROM replication);"
     "DELETE FROM scenario WHERE id NOT IN (SELECT scenario_id FROM replication);"
     // Treatments of a counterfactual study have no replications of their own.
     "DELETE FROM variant WHERE id NOT IN (SELECT variant_id FROM replication) AND id NOT IN "

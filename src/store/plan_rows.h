@@ -66,6 +66,15 @@ typedef struct cp_replication_row {
     char configuration_hash[CP_HASH_TEXT_SIZE];
 } cp_replication_row;
 
+/* A run of a scenario's network without driver errors or functions, for it and all other scenarios
+ * that start SUMO alike (same .sumocfg, options and files); the first of them has it. */
+typedef struct cp_background_plan_row {
+    size_t scenario; /* index into the scenarios */
+    uint64_t seed;
+    double duration_s;
+    char configuration_hash[CP_HASH_TEXT_SIZE];
+} cp_background_plan_row;
+
 typedef struct cp_plan_rows {
     cp_study_row study;
     cp_scenario_row *scenario;
@@ -78,6 +87,8 @@ typedef struct cp_plan_rows {
     size_t vehicle_model_count;
     cp_replication_row *replication;
     size_t replication_count;
+    cp_background_plan_row *background;
+    size_t background_count;
 } cp_plan_rows;
 
 /* Row id of a replication from its natural key. sweep is "": names of swept scenarios and variants

@@ -308,7 +308,72 @@ static cp_status fill_replications(const cp_study *study, const int64_t *only, c
     return CP_OK;
 }
 
+// ---- backgrounds ---------------------------------------------------------------------------
+
+static bool starts_alike(const cp_scenario_row *one, const cp_scenario_row *other)
+{
+    return strcmp(one->sumocfg, other->sumocfg) == 0 &&
+           strcmp(one->sumo_options, other->sumo_options) == 0 &&
+           strcmp(one->files, other->files) == 0;
+}
+
+// of: its options and files.
+static cp_status fill_background(const cp_study *study, size_t scenario, const cp_scenario_row *of,
+                                 cp_background_plan_row *row, cp_error *error)
+{
+    // The traffic of the baseline's first replication, but for the errors.
+    *row = (cp_background_plan_row){
+        .scenario = scenario,
+        .seed = cp_plan_seed(study, scenario, cp_study_baseline(study), 0),
+        .duration_s = study->background_s > 0.0 ? study->background_s : study->duration_s};
+    char *text = take_text(json_pack(
+        "{s:I, s:f, s:f, s:f, s:f, s:s, s:s}", "seed", (json_int_t)row->seed, "duration_s",
+        row->duration_s, "warmup_s", study->warmup_s, "step_length_s", study->step_length_s,
+        "stay_s", study->stay_s, "sumo_options", of->sumo_options, "files", of->files));
+    if (text == NULL)
+        return cp_fail_memory(error, "configuration");
+    cp_hash_bytes(text, strlen(text), row->configuration_hash);
+    free(text);
+    return CP_OK;
+}
+
+static cp_status fill_backgrounds(const cp_study *study, cp_plan_rows *rows, cp_error *error)
+{
+    rows->background = calloc(study->scenario_count, sizeof *rows->background);
+    if (rows->background == NULL)
+        return cp_fail_memory(error, "backgrounds");
+    for (size_t k = 0; study->background_s > 0.0 && k < study->scenario_count; k++) {
+        size_t first = 0;
+        while (!starts_alike(&rows->scenario[first], &rows->scenario[k]))
+            first++;
+        if (first < k)
+            continue;
+        cp_status status = fill_background(study, k, &rows->scenario[k],
+                                           &rows->background[rows->background_count], error);
+        if (status != CP_OK)
+            return status;
+        rows->background_count++;
+    }
+    return CP_OK;
+}
+
 // ---- public --------------------------------------------------------------------------------
+
+cp_status cp_plan_background(const cp_study *study, size_t scenario, cp_background_plan_row *row,
+                             cp_error *error)
+{
+    const cp_study_scenario *given = &study->scenarios[scenario];
+    cp_scenario_row of = {.sumo_options =
+                              words_text(given->sumo_options, given->sumo_option_count)};
+    cp_status status = of.sumo_options != NULL
+                           ? cp_scenario_files_json(given->sumocfg_path, &of.files, error)
+                           : cp_fail_memory(error, "backgrounds");
+    if (status == CP_OK)
+        status = fill_background(study, scenario, &of, row, error);
+    free(of.sumo_options);
+    free(of.files);
+    return status;
+}
 
 static cp_status create(const cp_study *study, const cp_vehicle_model_row *models,
                         size_t model_count, const int64_t *only, cp_plan_rows *rows,
@@ -326,6 +391,8 @@ static cp_status create(const cp_study *study, const cp_vehicle_model_row *model
         status = fill_vehicle_models(study, models, model_count, rows, error);
     if (status == CP_OK)
         status = fill_replications(study, only, rows, error);
+    if (status == CP_OK)
+        status = fill_backgrounds(study, rows, error);
     if (status != CP_OK)
         cp_plan_destroy(rows);
     return status;
@@ -370,6 +437,7 @@ void cp_plan_destroy(cp_plan_rows *rows)
     free(rows->sweep);
     free(rows->vehicle_model);
     free(rows->replication);
+    free(rows->background);
     free(rows->study.name);
     free(rows->study.question);
     free(rows->study.vehicles);

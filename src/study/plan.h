@@ -6,7 +6,7 @@
 #include "study/study_file.h"
 
 /* Every replication of a study: scenarios x variants x seeds, each with its row id and the hash of
- * everything its outcome depends on. */
+ * everything its outcome depends on; and one background run for every way to start SUMO. */
 
 /* models: one row for each of study->vehicles, in that order (two may be the same model; the first
  * has no name when the study has no default), then any others that its crashes may use; copied. The
@@ -21,6 +21,12 @@ CP_MUST_CHECK cp_status cp_plan_create_for(const cp_study *study,
                                            int64_t replication_id, cp_plan_rows *rows,
                                            cp_error *error);
 void cp_plan_destroy(cp_plan_rows *rows);
+
+/* The background run of one scenario, planned or not (then as long as a replication): its seed,
+ * length and configuration hash.
+ * Errors: CP_BAD_INPUT for a file that cannot be read; CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_plan_background(const cp_study *study, size_t scenario,
+                                           cp_background_plan_row *row, cp_error *error);
 
 /* Seed of replication number of a scenario and variant: a pure function of the study's seed and the
  * scenario's name; with paired seeds the variant takes no part, with independent ones its name

@@ -53,6 +53,10 @@ typedef struct raw_after_crash {
     char *stay_s;
 } raw_after_crash;
 
+typedef struct raw_background {
+    char *duration_s;
+} raw_background;
+
 typedef struct raw_scenario {
     char *name;
     char *sumocfg;
@@ -91,6 +95,7 @@ typedef struct raw_study {
     char *step_length_s;
     char *history_s;
     raw_after_crash *after_crash;
+    raw_background *background;
     raw_scenario *scenarios;
     unsigned scenarios_count;
     raw_variant *variants;
@@ -164,6 +169,9 @@ static const cyaml_schema_field_t COUNTERFACTUAL_FIELDS[] = {
 static const cyaml_schema_field_t AFTER_CRASH_FIELDS[] = {TEXT("stay_s", raw_after_crash, stay_s),
                                                           CYAML_FIELD_END};
 
+static const cyaml_schema_field_t BACKGROUND_FIELDS[] = {
+    TEXT("duration_s", raw_background, duration_s), CYAML_FIELD_END};
+
 static const cyaml_schema_field_t STUDY_FIELDS[] = {
     TEXT("study", raw_study, study),
     TEXT_OPTIONAL("question", raw_study, question),
@@ -177,6 +185,8 @@ static const cyaml_schema_field_t STUDY_FIELDS[] = {
     TEXT_OPTIONAL("history_s", raw_study, history_s),
     CYAML_FIELD_MAPPING_PTR("after_crash", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
                             after_crash, AFTER_CRASH_FIELDS),
+    CYAML_FIELD_MAPPING_PTR("background", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
+                            background, BACKGROUND_FIELDS),
     LIST("scenarios", raw_study, scenarios, SCENARIO),
     LIST("variants", raw_study, variants, VARIANT),
     CYAML_FIELD_MAPPING_PTR("vehicles", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
@@ -273,12 +283,32 @@ static cp_status take_head(const cp_yaml_file *file, const raw_study *raw, cp_st
     if (status == CP_OK)
         status = cp_yaml_number(file, "step_length_s", raw->step_length_s, 0.001, 1,
                                 &study->step_length_s, error);
+    if (status == CP_OK &&
+        fabs(1e3 * study->step_length_s - round(1e3 * study->step_length_s)) > 1e-6)
+        status = cp_yaml_fail(file, error, "step_length_s",
+                              "must be whole milliseconds, as SUMO counts them, found %s",
+                              raw->step_length_s);
     if (status == CP_OK)
         status = cp_yaml_number(file, "history_s", raw->history_s, 0, 60, &study->history_s, error);
     if (status == CP_OK && raw->after_crash != NULL)
         status = cp_yaml_number(file, "after_crash.stay_s", raw->after_crash->stay_s, 0, 86400,
                                 &study->stay_s, error);
     study->replications = (size_t)replications;
+    return status;
+}
+
+// As long as a replication unless told otherwise; a run that ends within its warm-up tells nothing.
+static cp_status take_background(const cp_yaml_file *file, const raw_background *raw,
+                                 cp_study *study, cp_error *error)
+{
+    study->background_s = study->duration_s;
+    if (raw == NULL)
+        return CP_OK;
+    cp_status status = cp_yaml_number(file, "background.duration_s", raw->duration_s, 0, 1e6,
+                                      &study->background_s, error);
+    if (status == CP_OK && study->background_s > 0 && study->background_s <= study->warmup_s)
+        status = cp_yaml_fail(file, error, "background.duration_s",
+                              "must be 0 (none) or more than warmup_s, found %s", raw->duration_s);
     return status;
 }
 
@@ -574,6 +604,8 @@ cp_status cp_study_load(const char *path, cp_study *study, cp_error *error)
         goto done;
     const raw_study *raw = (const raw_study *)file.data;
     status = take_head(&file, raw, study, error);
+    if (status == CP_OK)
+        status = take_background(&file, raw->background, study, error);
     if (status == CP_OK)
         status = take_scenarios(&file, raw, study, error);
     if (status == CP_OK)

@@ -80,10 +80,12 @@ typedef struct cp_study {
     size_t replications;  /* per scenario and variant, 1 ... 1 000 000 */
     double duration_s;    /* simulated time of a replication, (0, 1e6] */
     double warmup_s;      /* default 0; not counted; < duration_s */
-    double step_length_s; /* default 0.05; [0.001, 1] */
+    double step_length_s; /* default 0.05; [0.001, 1], whole milliseconds */
     double stay_s;        /* crashed cars stand on the road this long; default 0: they leave it at
                              once; [0, 86400] */
     double history_s;     /* kept of both cars before each crash; default 0; [0, 60] */
+    double background_s;  /* simulated without driver errors, per network; default: duration_s; 0:
+                             not at all, else > warmup_s */
     cp_study_counterfactual counterfactual;
     cp_study_scenario *scenarios;
     size_t scenario_count;

@@ -78,15 +78,25 @@ with tempfile.TemporaryDirectory() as name:
     message = run("background", study, "--db", database, expect=2).stderr
     assert "study.db" in message, message
     run("run", study, "--db", database)
+    own = sqlite3.connect(database).execute("SELECT * FROM background_run").fetchall()
     assert sqlite3.connect(database).execute("SELECT count(*) FROM crash").fetchone()[0] > 0
     for _ in range(2):
         rows = background(study, "--db", database)
         assert crashes(rows) == 0 and rows[0]["network"] == "crossing", rows
         stored = sqlite3.connect(database).execute(
-            "SELECT s.name, b.simulated_s, b.step_length_s, sum(b.reason = 'crash'), count(*) FROM "
-            "background AS b JOIN scenario AS s ON s.id = b.scenario_id").fetchone()
-        assert stored[:4] == ("crossing", 60.0, 0.05, 0), stored
-        assert stored[4] == sum(row["reported_by"] == "ours" for row in rows), (stored, rows)
+            "SELECT s.name, b.simulated_s, b.step_length_s FROM background_run AS b JOIN scenario AS s "
+            "ON s.id = b.scenario_id").fetchall()
+        assert stored == [("crossing", 60.0, 0.05)], stored
+        contacts = dict(sqlite3.connect(database).execute("SELECT reason, contacts FROM background_by_reason"))
+        assert contacts == {row["reason"]: int(row["contacts"]) for row in rows
+                            if row["reported_by"] == "ours" and int(row["contacts"])}, (contacts, rows)
+        # It is the run that the study made.
+        assert sqlite3.connect(database).execute("SELECT * FROM background_run").fetchall() == own
+
+    # Of another seed: beside it.
+    background(study, "--db", database, "--seed", "3")
+    assert sqlite3.connect(database).execute(
+        "SELECT count(*), sum(configuration_hash = '') FROM background_run").fetchone() == (2, 1)
 
     # What is wrong.
     message = run("background", folder / "none.sumocfg", expect=2).stderr

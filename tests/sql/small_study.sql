@@ -112,6 +112,20 @@ INSERT INTO sumo_collision (replication_id, number, time_s, collider, victim, su
 SELECT replication_id, number, time_s, 'flow.' || 10 * number, 'flow.' || (10 * number + 1),
        'collision', 'crash' FROM crash;
 
+-- Without driver errors: one network gives a crash, the other only grazes.
+INSERT INTO background_run (scenario_id, seed, step_length_s, simulated_s, vehicle_km, vehicle_h,
+                            departed, configuration_hash) VALUES
+    (11, 7000, 0.05, 3300.0, 185.0, 4.6, 400, 'fade00'),
+    (12, 7000, 0.05, 3300.0, 275.0, 4.6, 400, 'fade01');
+INSERT INTO background_contact (scenario_id, seed, step_length_s, number, time_s, x_m, y_m, reason,
+                                crash_type, closing_speed_m_s, lateral_offset_m, angle_rad,
+                                vehicle_1, vehicle_2) VALUES
+    (11, 7000, 0.05, 0, 612.5, 1.0, 2.0, 'graze', '', NULL, NULL, NULL, 'flow.1', 'flow.2'),
+    (11, 7000, 0.05, 1, 712.5, 1.0, 2.0, 'clipped_waiting', '', NULL, NULL, NULL, 'flow.3', 'flow.4'),
+    (11, 7000, 0.05, 2, 812.5, 1.0, 2.0, 'crash', 'front-side', 8.5, 0.4, -1.2, 'flow.5', 'flow.6'),
+    (11, 7000, 0.05, 3, 912.5, 1.0, 2.0, 'graze', '', NULL, NULL, NULL, 'flow.7', 'flow.8'),
+    (12, 7000, 0.05, 0, 612.5, 1.0, 2.0, 'graze', '', NULL, NULL, NULL, 'flow.1', 'flow.2');
+
 -- The second crash of some replications was into a car of the first.
 UPDATE crash SET is_secondary = 1, follows_crash_id = id - 1 WHERE number = 1 AND replication_id IN
     (SELECT id FROM replication WHERE number IN (2, 5));

@@ -118,6 +118,31 @@ static void migrates_from_every_version(void **state)
     free(wanted);
 }
 
+// What version 6 counted of a network's background are as many contacts, and a row of their run.
+static void counted_backgrounds_become_contacts(void **state)
+{
+    const fixture *f = *state;
+    cp_store *store = NULL;
+    cp_error error = {0};
+    make_version(f->db, 8);
+    shell(
+        "sqlite3 '%s' \"INSERT INTO background SELECT id, 3, 0.05, 900.0, 120.5, 'graze', '', 12 "
+        "FROM scenario LIMIT 1; INSERT INTO background SELECT id, 3, 0.05, 900.0, 120.5, 'crash', "
+        "'front-side', 2 FROM scenario LIMIT 1; INSERT INTO background SELECT id, 4, 0.05, 900.0, "
+        "121.5, 'none', '', 0 FROM scenario LIMIT 1\"",
+        f->db);
+    assert_ok(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), &error);
+    assert_true(number_of(store, "SELECT count(*) FROM background_run WHERE vehicle_h IS NULL AND "
+                                 "configuration_hash = ''") == 2);
+    assert_true(number_of(store, "SELECT sum(vehicle_km) FROM background_run") == 242.0);
+    assert_true(number_of(store, "SELECT contacts FROM background_by_reason WHERE reason = "
+                                 "'graze'") == 12);
+    assert_true(number_of(store, "SELECT contacts FROM background_by_reason WHERE reason = 'crash' "
+                                 "AND crash_type = 'front-side'") == 2);
+    assert_true(number_of(store, "SELECT max(number) FROM background_contact") == 13);
+    cp_store_close(store);
+}
+
 // Pulses that the first codec packed, and what the program of that version unpacked of them.
 static void first_codec_is_read(void **state)
 {
@@ -199,6 +224,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(migrates_from_every_version, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(counted_backgrounds_become_contacts, fixture_begin,
+                                        fixture_end),
         cmocka_unit_test_setup_teardown(first_codec_is_read, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(failed_migration_changes_nothing, fixture_begin,
                                         fixture_end),

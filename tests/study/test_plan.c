@@ -205,6 +205,83 @@ static void one_replication_is_planned_as_among_all(void **state)
     unload(&study, &all);
 }
 
+// One background for every way to start SUMO, whatever the errors of the drivers.
+static void a_network_has_one_background(void **state)
+{
+    const fixture *f = *state;
+    static const struct {
+        const char *sweep;
+        size_t scenarios, backgrounds;
+    } CASE[] = {
+        {"", 1, 1},
+        {"sweep: [{parameter: scenarios.left_turn.failed_to_see.probability_1, values: [0.1, 0.2, "
+         "0.3]}]\n",
+         3, 1},
+        {"sweep: [{parameter: scenarios.left_turn.sumo_options.scale, values: [0.5, 1]}, "
+         "{parameter: scenarios.left_turn.failed_to_see.probability_1, values: [0.1, 0.2]}]\n",
+         4, 2},
+        {"background: {duration_s: 0}\n", 1, 0},
+    };
+    for (size_t k = 0; k < sizeof CASE / sizeof *CASE; k++) {
+        cp_study study;
+        cp_plan_rows rows;
+        char longer[4096];
+        snprintf(longer, sizeof longer, "%s%s", GOOD_STUDY, CASE[k].sweep);
+        load(f, longer, &study, &rows);
+        assert_int_equal(rows.scenario_count, CASE[k].scenarios);
+        assert_int_equal(rows.background_count, CASE[k].backgrounds);
+        for (size_t b = 0; b < rows.background_count; b++) {
+            cp_background_plan_row alone;
+            cp_error error = {0};
+            size_t scenario = rows.background[b].scenario;
+            assert_ok(cp_plan_background(&study, scenario, &alone, &error), &error);
+            assert_string_equal(alone.configuration_hash, rows.background[b].configuration_hash);
+            assert_int_equal(alone.seed, cp_plan_seed(&study, scenario, 0, 0));
+            assert_true(b == 0 || strcmp(rows.background[0].configuration_hash,
+                                         rows.background[b].configuration_hash) != 0);
+        }
+        unload(&study, &rows);
+    }
+}
+
+static void hash_of_background(const fixture *f, const char *old, const char *replacement,
+                               char hash[CP_HASH_TEXT_SIZE])
+{
+    cp_study study;
+    cp_plan_rows rows;
+    char *text = study_with(old, replacement);
+    load(f, text, &study, &rows);
+    free(text);
+    strcpy(hash, rows.background[0].configuration_hash);
+    unload(&study, &rows);
+}
+
+static void a_background_depends_on_its_network_alone(void **state)
+{
+    const fixture *f = *state;
+    char plain[CP_HASH_TEXT_SIZE], other[CP_HASH_TEXT_SIZE];
+    hash_of_background(f, "replications: 3", "replications: 3", plain);
+    static const char *const SAME[][2] = {{"probability_1: 0.25", "probability_1: 0.5"},
+                                          {"ttc_s: 1.5", "ttc_s: 1.6"},
+                                          {"replications: 3", "replications: 30"},
+                                          {"default: car.yaml", "default: van.yaml"}};
+    for (size_t k = 0; k < sizeof SAME / sizeof *SAME; k++) {
+        hash_of_background(f, SAME[k][0], SAME[k][1], other);
+        assert_string_equal(other, plain);
+    }
+    static const char *const CHANGED[][2] = {
+        {"seed: 20261122", "seed: 20261123"},
+        {"warmup_s: 60", "warmup_s: 61"},
+        {"warmup_s: 60", "warmup_s: 60\nbackground: {duration_s: 300}"},
+        {"warmup_s: 60", "warmup_s: 60\nstep_length_s: 0.1"},
+        {"warmup_s: 60", "warmup_s: 60\nafter_crash: {stay_s: 5}"},
+        {"\"0.5\"", "\"0.6\""}};
+    for (size_t k = 0; k < sizeof CHANGED / sizeof *CHANGED; k++) {
+        hash_of_background(f, CHANGED[k][0], CHANGED[k][1], other);
+        assert_string_not_equal(other, plain);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -217,6 +294,9 @@ int main(void)
                                         fixture_end),
         cmocka_unit_test_setup_teardown(files_of_a_scenario_are_listed, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(two_cars_of_one_name_are_refused, fixture_begin,
+                                        fixture_end),
+        cmocka_unit_test_setup_teardown(a_network_has_one_background, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(a_background_depends_on_its_network_alone, fixture_begin,
                                         fixture_end),
         cmocka_unit_test_setup_teardown(one_replication_is_planned_as_among_all, fixture_begin,
                                         fixture_end),

@@ -40,7 +40,7 @@ static void reads_everything(void **state)
         assert_true(aeb->parameter[k] == expected);
     }
 
-    assert_true(study.stay_s == 0.0 && study.history_s == 0.0);
+    assert_true(study.stay_s == 0.0 && study.history_s == 0.0 && study.background_s == 900.0);
     assert_int_equal(study.vehicle_count, 2);
     assert_null(study.vehicles[0].type);
     assert_string_equal(study.vehicles[1].type, "van");
@@ -59,6 +59,29 @@ static void after_a_crash_and_before_it(void **state)
     assert_ok(cp_study_load(f->study, &study, &error), &error);
     assert_true(study.stay_s == 1800.0 && study.history_s == 4.5);
     cp_study_destroy(&study);
+}
+
+static void background_has_a_length_of_its_own_or_none(void **state)
+{
+    const fixture *f = *state;
+    static const struct {
+        const char *section;
+        double background_s;
+    } CASE[] = {{"background: {duration_s: 300}\n", 300.0},
+                {"background: {duration_s: 0}\n", 0.0},
+                {"background: {duration_s: 3600}\n", 3600.0}};
+    for (size_t k = 0; k < sizeof CASE / sizeof *CASE; k++) {
+        cp_study study;
+        cp_error error = {0};
+        char section[128];
+        snprintf(section, sizeof section, "warmup_s: 60\n%s", CASE[k].section);
+        char *text = study_with("warmup_s: 60\n", section);
+        write_text(f, "study.yaml", text);
+        free(text);
+        assert_ok(cp_study_load(f->study, &study, &error), &error);
+        assert_true(study.background_s == CASE[k].background_s);
+        cp_study_destroy(&study);
+    }
 }
 
 static void baseline_can_be_named(void **state)
@@ -98,11 +121,18 @@ static const struct {
     {"duration_s: 900", "duration_s: inf", "study.yaml:6: duration_s"},
     {"duration_s: 900", "duration_s: 15 min", "study.yaml:6: duration_s must be a number"},
     {"warmup_s: 60", "warmup_s: 900", "study.yaml:7: warmup_s must be less than duration_s"},
+    {"warmup_s: 60", "step_length_s: 0.0125",
+     "study.yaml:7: step_length_s must be whole milliseconds, as SUMO counts them, found 0.0125"},
     {"warmup_s: 60", "history_s: 61", "study.yaml:7: history_s must be between 0 and 60, found 61"},
     {"warmup_s: 60", "after_crash: {stay_s: -1}",
      "study.yaml:7: after_crash.stay_s must be between 0 and 86400, found -1"},
     {"warmup_s: 60", "after_crash: {}", "Missing required mapping field: stay_s"},
     {"warmup_s: 60", "after_crash: {stays_s: 1}", "Unexpected key: stays_s"},
+    {"warmup_s: 60", "warmup_s: 60\nbackground: {duration_s: 60}",
+     "study.yaml:8: background.duration_s must be 0 (none) or more than warmup_s, found 60"},
+    {"warmup_s: 60", "background: {duration_s: -1}",
+     "study.yaml:7: background.duration_s must be between 0 and 1e+06, found -1"},
+    {"warmup_s: 60", "background: {}", "Missing required mapping field: duration_s"},
     {"replications: 3", "replications: 2.5", "study.yaml:5: replications must be a whole number"},
     {"replications: 3", "replications: 0", "study.yaml:5: replications"},
     {"seed: 20261122", "seed: -1", "study.yaml:4: seed"},
@@ -230,6 +260,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(reads_everything, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(after_a_crash_and_before_it, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(background_has_a_length_of_its_own_or_none, fixture_begin,
+                                        fixture_end),
         cmocka_unit_test_setup_teardown(baseline_can_be_named, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(counterfactual_section_and_equipment, fixture_begin,
                                         fixture_end),

@@ -53,17 +53,19 @@ void cp_detector_destroy(cp_detector *detector)
     free(detector);
 }
 
-static void enclose(cp_box *box, const cp_vehicle_state *state, double margin_m)
+// Make the box hold the rectangle of a state with that heading.
+static void enclose(cp_box *box, const cp_vehicle_state *state, cp_vec2 heading, double margin_m)
 {
-    cp_rectangle rectangle = cp_footprint_of_state(state);
-    cp_vec2 corners_m[4];
-    cp_rectangle_corners(&rectangle, corners_m);
-    for (int k = 0; k < 4; k++) {
-        box->min_x_m = fmin(box->min_x_m, corners_m[k].x - margin_m);
-        box->min_y_m = fmin(box->min_y_m, corners_m[k].y - margin_m);
-        box->max_x_m = fmax(box->max_x_m, corners_m[k].x + margin_m);
-        box->max_y_m = fmax(box->max_y_m, corners_m[k].y + margin_m);
-    }
+    double half_length_m = 0.5 * state->length_m, half_width_m = 0.5 * state->width_m;
+    double x_m = state->front_x_m - heading.x * half_length_m;
+    double y_m = state->front_y_m - heading.y * half_length_m;
+    double along = fabs(heading.x), across = fabs(heading.y);
+    double reach_x_m = along * half_length_m + across * half_width_m + margin_m;
+    double reach_y_m = across * half_length_m + along * half_width_m + margin_m;
+    box->min_x_m = fmin(box->min_x_m, x_m - reach_x_m);
+    box->min_y_m = fmin(box->min_y_m, y_m - reach_y_m);
+    box->max_x_m = fmax(box->max_x_m, x_m + reach_x_m);
+    box->max_y_m = fmax(box->max_y_m, y_m + reach_y_m);
 }
 
 static bool is_finite_state(const cp_vehicle_state *state)
@@ -76,18 +78,27 @@ static bool is_finite_state(const cp_vehicle_state *state)
 static cp_box box_of(const cp_vehicle_motion *motion, double step_length_s)
 {
     cp_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    const cp_vehicle_state *before = &motion->before, *after = &motion->after;
+    if (!is_finite_state(after))
+        return box;
+    cp_vec2 heading = cp_vec2_heading(after->yaw_rad);
     if (cp_motion_is_jump(motion, step_length_s)) {
-        if (is_finite_state(&motion->after))
-            enclose(&box, &motion->after, 0.5 * PARTED_M);
+        enclose(&box, after, heading, 0.5 * PARTED_M);
         return box;
     }
-    if (!is_finite_state(&motion->before) || !is_finite_state(&motion->after))
+    if (!is_finite_state(before))
         return box;
-    double half_turn_rad = 0.5 * cp_wrap_angle(motion->after.yaw_rad - motion->before.yaw_rad);
-    double lever_m = hypot(motion->after.length_m, motion->after.width_m);
-    double margin_m = lever_m * (1.0 - cos(half_turn_rad)) + 0.5 * PARTED_M;
-    enclose(&box, &motion->before, margin_m);
-    enclose(&box, &motion->after, margin_m);
+
+    // Most drive straight on.
+    double margin_m = 0.5 * PARTED_M;
+    cp_vec2 heading_before = heading;
+    if (before->yaw_rad != after->yaw_rad) {
+        double half_turn_rad = 0.5 * cp_wrap_angle(after->yaw_rad - before->yaw_rad);
+        margin_m += hypot(after->length_m, after->width_m) * (1.0 - cos(half_turn_rad));
+        heading_before = cp_vec2_heading(before->yaw_rad);
+    }
+    enclose(&box, before, heading_before, margin_m);
+    enclose(&box, after, heading, margin_m);
     return box;
 }
 

@@ -81,8 +81,10 @@ bool cp_motion_is_jump(const cp_vehicle_motion *motion, double step_length_s)
 {
     if (!motion->was_present)
         return true;
-    double turn_rad = cp_wrap_angle(motion->after.yaw_rad - motion->before.yaw_rad);
-    cp_vec2 heading = cp_vec2_heading(motion->before.yaw_rad + 0.5 * turn_rad);
+    double yaw_rad = motion->before.yaw_rad;
+    if (motion->after.yaw_rad != yaw_rad)
+        yaw_rad += 0.5 * cp_wrap_angle(motion->after.yaw_rad - yaw_rad);
+    cp_vec2 heading = cp_vec2_heading(yaw_rad);
     double sideways_m = fabs(cp_vec2_cross(heading, chord_of(motion)));
     return sideways_m > SIDEWAYS_JUMP_M_S * step_length_s;
 }

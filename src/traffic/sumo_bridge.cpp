@@ -14,6 +14,7 @@
 #include <malloc.h>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -68,6 +69,7 @@ struct Bridge {
     std::vector<Size> size_of_type;
     std::vector<cp_vehicle_state> states;
     std::vector<uint32_t> departed, gone, present, present_before;
+    std::vector<uint32_t> under_way;        // departed and not arrived, by id
     std::vector<uint32_t> type_of, lane_of; // by vehicle number: as last seen
     bool reads_places = true;
     std::vector<uint64_t> seen_in_step; // by vehicle number
@@ -276,18 +278,6 @@ double yaw_of_sumo_angle(double angle_deg)
     return cp_rad_from_deg(yaw_deg <= -180.0 ? 180.0 : yaw_deg);
 }
 
-// Number of a vehicle. SUMO lists ids in order: those of the last step are looked through along
-// with those of this one, so that few are looked up.
-uint32_t number_vehicle(const std::string &id, size_t *cursor)
-{
-    const std::vector<uint32_t> &before = bridge->present_before;
-    while (*cursor < before.size() && *bridge->vehicles.name(before[*cursor]) < id)
-        ++*cursor;
-    if (*cursor < before.size() && *bridge->vehicles.name(before[*cursor]) == id)
-        return before[(*cursor)++];
-    return bridge->vehicles.number(id);
-}
-
 // What stays the same as long as a vehicle exists: looked up when it is first seen.
 uint32_t type_of_vehicle(const std::string &id, uint32_t vehicle)
 {
@@ -313,15 +303,23 @@ void read_place(const std::string &id, cp_vehicle_state *state)
     state->lane_position_m = libsumo::Vehicle::getLanePosition(id);
 }
 
-// Read one vehicle; false when it is not on the road.
-bool read_vehicle(const std::string &id, size_t *cursor, cp_vehicle_state *state)
+enum class Where { ON_THE_ROAD, ELSEWHERE, GONE };
+
+// Read one vehicle, if it is on the road.
+Where read_vehicle(uint32_t vehicle, cp_vehicle_state *state)
 {
     using libsumo::Vehicle;
-    const libsumo::TraCIPosition position = Vehicle::getPosition(id, true);
+    const std::string &id = *bridge->vehicles.name(vehicle);
+    libsumo::TraCIPosition position;
+    try {
+        position = Vehicle::getPosition(id, true);
+    } catch (const libsumo::TraCIException &) {
+        return Where::GONE; // taken out on the way, by us or by a calibrator: not among the arrived
+    }
     if (position.x <= -1e9 || position.y <= -1e9)
-        return false;
+        return Where::ELSEWHERE;
     *state = cp_vehicle_state{};
-    state->vehicle = number_vehicle(id, cursor);
+    state->vehicle = vehicle;
     state->type = type_of_vehicle(id, state->vehicle);
     if (bridge->reads_places)
         read_place(id, state);
@@ -332,35 +330,77 @@ bool read_vehicle(const std::string &id, size_t *cursor, cp_vehicle_state *state
     state->speed_m_s = Vehicle::getSpeed(id);
     state->length_m = bridge->size_of_type[state->type].length_m;
     state->width_m = bridge->size_of_type[state->type].width_m;
-    return true;
+    return Where::ON_THE_ROAD;
+}
+
+// Vehicles that came or went in this step. SUMO's own list of all, which is in the order of their
+// ids too, costs as much as reading a state: it copies every id.
+void keep_account()
+{
+    const auto by_id = [](uint32_t vehicle, const std::string &id) {
+        return *bridge->vehicles.name(vehicle) < id;
+    };
+    std::vector<uint32_t> &all = bridge->under_way;
+    bridge->departed.clear();
+    for (const std::string &id : libsumo::Simulation::getDepartedIDList()) {
+        bridge->departed.push_back(bridge->vehicles.number(id));
+        const auto place = std::lower_bound(all.begin(), all.end(), id, by_id);
+        if (place == all.end() || *place != bridge->departed.back())
+            all.insert(place, bridge->departed.back());
+    }
+    for (const std::string &id : libsumo::Simulation::getArrivedIDList()) {
+        const auto place = std::lower_bound(all.begin(), all.end(), id, by_id);
+        if (place != all.end() && *bridge->vehicles.name(*place) == id)
+            all.erase(place);
+    }
+}
+
+// Our account against SUMO's list: a vehicle left out would be one whose crashes nobody sees.
+void check_account()
+{
+    const std::vector<std::string> listed = libsumo::Vehicle::getIDList();
+    const bool is_right =
+        std::equal(listed.begin(), listed.end(), bridge->present.begin(), bridge->present.end(),
+                   [](const std::string &id, uint32_t vehicle) {
+                       return id == *bridge->vehicles.name(vehicle);
+                   });
+    if (!is_right)
+        throw std::logic_error("there are " + std::to_string(listed.size()) +
+                               " vehicles, but by departures and arrivals " +
+                               std::to_string(bridge->present.size()));
 }
 
 void step()
 {
+    const uint64_t steps_between_checks = 64;
     libsumo::Simulation::step();
     bridge->speed_commands.clear();
     bridge->step++;
+    keep_account();
     bridge->present_before.swap(bridge->present);
     bridge->present.clear();
     bridge->states.clear();
-    size_t cursor = 0;
-    for (const std::string &id : libsumo::Vehicle::getIDList()) {
+    size_t kept = 0;
+    for (uint32_t vehicle : bridge->under_way) {
         cp_vehicle_state state;
-        if (!read_vehicle(id, &cursor, &state))
+        const Where where = read_vehicle(vehicle, &state);
+        if (where != Where::GONE)
+            bridge->under_way[kept++] = vehicle;
+        if (where != Where::ON_THE_ROAD)
             continue;
         bridge->states.push_back(state);
-        bridge->present.push_back(state.vehicle);
-        if (state.vehicle >= bridge->seen_in_step.size())
-            bridge->seen_in_step.resize(2 * static_cast<size_t>(state.vehicle) + 64, 0);
-        bridge->seen_in_step[state.vehicle] = bridge->step;
+        bridge->present.push_back(vehicle);
+        if (vehicle >= bridge->seen_in_step.size())
+            bridge->seen_in_step.resize(2 * static_cast<size_t>(vehicle) + 64, 0);
+        bridge->seen_in_step[vehicle] = bridge->step;
     }
+    bridge->under_way.resize(kept);
+    if (bridge->step % steps_between_checks == 1)
+        check_account();
     bridge->gone.clear();
     for (uint32_t vehicle : bridge->present_before)
         if (bridge->seen_in_step[vehicle] != bridge->step)
             bridge->gone.push_back(vehicle);
-    bridge->departed.clear();
-    for (const std::string &id : libsumo::Simulation::getDepartedIDList())
-        bridge->departed.push_back(bridge->vehicles.number(id));
 }
 
 // Junction of a lane inside one (SUMO's name ":junction_link_lane"); "" for a lane of an edge.

@@ -11,12 +11,9 @@
  * functions on its two vehicles. The checkpoint lies at least CP_COUNTERFACTUAL_LEAD_S before
  * contact, and at least 1 s before the driver error began; the onset is known as the last
  * checkpoint at which the driver was not yet at fault. Branches run until
- * CP_COUNTERFACTUAL_HORIZON_S after the baseline's contact. */
+ * CP_COUNTERFACTUAL_HORIZON_S after the baseline's contact (branch_run.h). */
 #define CP_COUNTERFACTUAL_LEAD_S 4.0
 #define CP_COUNTERFACTUAL_BEFORE_ERROR_S 1.0
-#define CP_COUNTERFACTUAL_HORIZON_S 10.0
-#define CP_COUNTERFACTUAL_SPEED_M_S 0.5 /* mitigated or aggravated by more than this */
-#define CP_COUNTERFACTUAL_OLC_G 0.5
 
 typedef struct cp_counterfactual cp_counterfactual;
 

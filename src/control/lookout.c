@@ -8,13 +8,18 @@
 #define OTHERWISE_LATER_S 0.5 /* driving otherwise, they may meet this much later */
 #define BISECTIONS 40
 
+static bool is_turning(const cp_moving_rectangle *moving)
+{
+    return fabs(moving->yaw_rate_rad_s) > TURNING_RAD_S;
+}
+
 cp_target_class cp_target_class_of(const cp_moving_rectangle *own,
                                    const cp_moving_rectangle *target)
 {
     double apart_rad = fabs(cp_wrap_angle(target->rectangle.yaw_rad - own->rectangle.yaw_rad));
     if (apart_rad < M_PI / 4.0)
         return CP_TARGET_REAR_END;
-    if (fabs(own->yaw_rate_rad_s) > TURNING_RAD_S || fabs(target->yaw_rate_rad_s) > TURNING_RAD_S)
+    if (is_turning(own) || is_turning(target))
         return CP_TARGET_TURNING;
     return apart_rad > 0.75 * M_PI ? CP_TARGET_ONCOMING : CP_TARGET_CROSSING;
 }
@@ -185,15 +190,17 @@ static cp_moving_rectangle straightened(cp_moving_rectangle moving)
     return moving;
 }
 
-// As if it had braked evenly from now: on the same path, as far in time_s as it comes braking.
-static cp_moving_rectangle braking(cp_moving_rectangle moving, double deceleration_m_s2,
-                                   double time_s)
+// As if it had gained speed evenly from now, or braked: on the same path, as far in time_s as it
+// comes then.
+static cp_moving_rectangle accelerating(cp_moving_rectangle moving, double acceleration_m_s2,
+                                        double time_s)
 {
     double speed_m_s = cp_vec2_length(moving.velocity_m_s);
-    if (!(deceleration_m_s2 > 0.0 && speed_m_s > 0.0 && time_s > 0.0))
+    if (!(speed_m_s > 0.0 && time_s > 0.0))
         return moving;
-    double until_s = fmin(time_s, speed_m_s / deceleration_m_s2);
-    double way_m = until_s * (speed_m_s - 0.5 * deceleration_m_s2 * until_s);
+    double until_s =
+        acceleration_m_s2 < 0.0 ? fmin(time_s, speed_m_s / -acceleration_m_s2) : time_s;
+    double way_m = until_s * (speed_m_s + 0.5 * acceleration_m_s2 * until_s);
     double share_1 = way_m / (speed_m_s * time_s);
     moving.velocity_m_s = cp_vec2_scale(moving.velocity_m_s, share_1);
     moving.yaw_rate_rad_s *= share_1;
@@ -201,55 +208,67 @@ static cp_moving_rectangle braking(cp_moving_rectangle moving, double decelerati
 }
 
 /* Two vehicles at one moment. */
-typedef struct cp_encounter {
+typedef struct encounter {
     cp_moving_rectangle own;
     cp_moving_rectangle target;
-    double target_braking_m_s2; /* < 0: it gains speed */
-} cp_encounter;
+    double own_m_s2; /* accelerations along their headings */
+    double target_m_s2;
+    cp_target_class class;
+    double ttc_s;
+} encounter;
 
-// Conditions 4 and 5 for two that meet in ttc_s as they go now.
-static bool meet_otherwise(const cp_encounter *pair, cp_target_class class, double ttc_s,
-                           double later_s)
+// Condition 3 without 4: whether the contact takes the function, or the driver sees to it.
+static bool takes_braking(const encounter *pair, double required_m_s2)
 {
-    cp_moving_rectangle own_straight = straightened(pair->own);
-    cp_moving_rectangle target_straight = straightened(pair->target);
-    bool may_straighten = class == CP_TARGET_TURNING || ttc_s > CP_LOOKOUT_TURN_HOLDS_S;
-    if (may_straighten && (cp_ttc_s(&own_straight, &pair->target, later_s) == INFINITY ||
-                           cp_ttc_s(&pair->own, &target_straight, later_s) == INFINITY))
-        return false;
-    if (class == CP_TARGET_REAR_END)
-        return true;
-    cp_moving_rectangle slower = braking(pair->target, pair->target_braking_m_s2, ttc_s);
-    return cp_ttc_s(&pair->own, &slower, later_s) < INFINITY;
+    cp_vec2 axis = cp_vec2_heading(pair->own.rectangle.yaw_rad);
+    double speed_m_s = cp_vec2_dot(pair->own.velocity_m_s, axis);
+    double braking_m_s2 = pair->class != CP_TARGET_ONCOMING ? -pair->own_m_s2 : 0.0;
+    if (pair->class == CP_TARGET_REAR_END) {
+        speed_m_s -= cp_vec2_dot(pair->target.velocity_m_s, axis);
+        braking_m_s2 += pair->target_m_s2;
+    }
+    double twice_s = 2.0 * pair->ttc_s; // v^2/(2 d) with d = v TTC
+    return speed_m_s >= twice_s * required_m_s2 && speed_m_s > twice_s * braking_m_s2;
 }
 
-// Conditions 1 to 5 for two vehicles at one moment; *ttc_s is set when they hold.
-static bool is_threat(const cp_lookout_settings *settings, const cp_encounter *pair, double *ttc_s)
+// Conditions 5 and 6.
+static bool meet_otherwise(const encounter *pair, double later_s)
 {
     const cp_moving_rectangle *own = &pair->own, *target = &pair->target;
-    cp_target_class class = cp_target_class_of(own, target);
-    if (!settings->has_class[class])
+    bool may_straighten =
+        pair->ttc_s > CP_LOOKOUT_TURN_HOLDS_S || is_turning(own) || is_turning(target);
+    cp_moving_rectangle own_straight = straightened(*own);
+    cp_moving_rectangle target_straight = straightened(*target);
+    if (may_straighten && (cp_ttc_s(&own_straight, target, later_s) == INFINITY ||
+                           cp_ttc_s(own, &target_straight, later_s) == INFINITY))
         return false;
-    *ttc_s = cp_ttc_s(own, target, settings->ttc_s);
-    if (!(*ttc_s < settings->ttc_s))
-        return false;
+    if (pair->class == CP_TARGET_REAR_END)
+        return true;
+    cp_moving_rectangle other = accelerating(*target, pair->target_m_s2, pair->ttc_s);
+    return cp_ttc_s(own, &other, later_s) < INFINITY;
+}
 
-    cp_vec2 axis = cp_vec2_heading(own->rectangle.yaw_rad);
-    double speed_m_s = cp_vec2_dot(own->velocity_m_s, axis);
-    if (class == CP_TARGET_REAR_END)
-        speed_m_s -= cp_vec2_dot(target->velocity_m_s, axis);
-    if (speed_m_s < 2.0 * *ttc_s * settings->required_m_s2)
+// Conditions 1 to 6 for two vehicles at one moment; class and TTC are set as far as they hold.
+static bool is_threat(const cp_lookout_settings *settings, encounter *pair)
+{
+    pair->class = cp_target_class_of(&pair->own, &pair->target);
+    if (!settings->has_class[pair->class])
         return false;
-    return meet_otherwise(pair, class, *ttc_s, settings->ttc_s + OTHERWISE_LATER_S);
+    pair->ttc_s = cp_ttc_s(&pair->own, &pair->target, settings->ttc_s);
+    return pair->ttc_s < settings->ttc_s && takes_braking(pair, settings->required_m_s2) &&
+           meet_otherwise(pair, settings->ttc_s + OTHERWISE_LATER_S);
 }
 
 static bool is_threat_inside(const cp_lookout_settings *settings, const cp_vehicle_motion *own,
                              const cp_vehicle_motion *target, double fraction, double *ttc_s)
 {
-    cp_encounter pair = {.own = cp_moving_rectangle_inside(own, fraction),
-                         .target = cp_moving_rectangle_inside(target, fraction),
-                         .target_braking_m_s2 = -target->after.acceleration_m_s2};
-    return is_threat(settings, &pair, ttc_s);
+    encounter pair = {.own = cp_moving_rectangle_inside(own, fraction),
+                      .target = cp_moving_rectangle_inside(target, fraction),
+                      .own_m_s2 = own->after.acceleration_m_s2,
+                      .target_m_s2 = target->after.acceleration_m_s2};
+    bool is_one = is_threat(settings, &pair);
+    *ttc_s = pair.ttc_s;
+    return is_one;
 }
 
 // Fraction of the step at which it became a threat, which it is at the end: 0 if it was already at
@@ -283,8 +302,8 @@ bool cp_lookout_threat(const cp_lookout *lookout, const cp_vehicle_motion *own, 
         const cp_track *track = &tracks->track[k];
         const cp_vehicle_motion *target = cp_traffic_motion_of(lookout->traffic, track->vehicle);
         double known_s = track->seen_since_s + settings->confirmation_s, ttc_s;
-        if (!target || !cp_lookout_is_known(lookout, track) ||
-            !is_threat_inside(settings, own, target, 1.0, &ttc_s))
+        if (!target || !cp_lookout_is_known(lookout, track) || cp_turns_too_fast(own) ||
+            cp_turns_too_fast(target) || !is_threat_inside(settings, own, target, 1.0, &ttc_s))
             continue;
         double inside_s = now_s - (1.0 - find_instant(settings, own, target)) * step_s;
         double instant_s = fmax(inside_s, known_s);

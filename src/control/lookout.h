@@ -19,12 +19,16 @@
  *   2. TTC < ttc_s (ttc.h: constant velocity and yaw rate of both);
  *   3. the deceleration it takes is at least required_m_s2: v^2/(2 d) = v/(2 TTC) with v the own
  *      speed, less the target's along the own axis in same-direction traffic;
- *   4. where one of the two turns, or TTC is above CP_LOOKOUT_TURN_HOLDS_S: it holds too if either
+ *   4. the driver does not brake that hard already (an oncoming target comes all the same);
+ *   5. where one of the two turns, or TTC is above CP_LOOKOUT_TURN_HOLDS_S: it holds too if either
  *      of them drove straight on from now. A driver in a junction straightens up at its end; the
  *      cars waiting beside his way are no targets, although the circle that he is on leads through
  *      them. Neither is one far ahead that moves a little within its lane;
- *   5. of a target that does not head the same way: it holds too if the target goes on braking as
- * it does. One that is about to stop beside the own way, to let the own car pass, is none. */
+ *   6. of a target that does not head the same way: it holds too if the target goes on braking or
+ *      gaining speed as it does. One that is about to stop beside the own way, or to be past it in
+ *      time, is none;
+ *   7. none of the two turns faster than 1 g of lateral acceleration allows, as cars of SUMO do in
+ *      tight corners and where lanes change: there its heading does not say where it goes. */
 
 #define CP_LOOKOUT_TURN_HOLDS_S 1.5 /* assumed */
 

@@ -3,6 +3,11 @@
 
 #include "core/units.h"
 
+bool cp_turns_too_fast(const cp_vehicle_motion *motion)
+{
+    return fabs(motion->yaw_rate_rad_s * motion->after.speed_m_s) > CP_G0_M_S2;
+}
+
 cp_moving_rectangle cp_moving_rectangle_of(const cp_vehicle_motion *motion)
 {
     const cp_vehicle_state *state = &motion->after;
@@ -14,7 +19,7 @@ cp_moving_rectangle cp_moving_rectangle_of(const cp_vehicle_motion *motion)
         .velocity_m_s = cp_vec2_scale(heading, state->speed_m_s),
         .yaw_rate_rad_s = motion->yaw_rate_rad_s,
     };
-    if (fabs(moving.yaw_rate_rad_s * state->speed_m_s) > CP_G0_M_S2)
+    if (cp_turns_too_fast(motion))
         moving.yaw_rate_rad_s = 0.0;
     return moving;
 }

@@ -18,6 +18,9 @@ typedef struct cp_moving_rectangle {
  * lateral acceleration is such a jump and not a turn, and counts as 0. */
 cp_moving_rectangle cp_moving_rectangle_of(const cp_vehicle_motion *motion);
 
+/* Whether its yaw rate is that of such a jump, or of a corner too tight for its speed. */
+bool cp_turns_too_fast(const cp_vehicle_motion *motion);
+
 /* The same inside the step, fraction 0 = beginning, 1 = end: constant acceleration along the chord,
  * heading turned evenly. Needs a motion whose vehicle was present. */
 cp_moving_rectangle cp_moving_rectangle_inside(const cp_vehicle_motion *motion, double fraction);

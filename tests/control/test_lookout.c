@@ -184,6 +184,73 @@ static void a_car_that_stops_beside_the_way_is_no_threat(void **unused)
     }
 }
 
+static void gain_speed(void)
+{
+    brake(&road.cars[1], -2.5);
+}
+
+static void a_car_that_will_be_past_is_no_threat(void **unused)
+{
+    (void)unused;
+    // Crossing from the right at 4 m/s, its tail in the way in 1.5 s; gaining speed it is past by
+    // then.
+    for (int gains = 0; gains < 2; gains++) {
+        cp_lookout_settings settings = plain();
+        cp_threat threat;
+        cp_traffic *traffic = road_open(0.05);
+        road_add("own", 0.0, 0.0, 0.0, 12.0);
+        road_add("crossing", 22.0, -3.2, 0.5 * CP_PI, 4.0);
+        assert_int_equal(
+            find_threat_driving(traffic, &settings, gains ? gain_speed : drive_on, &threat),
+            !gains);
+        cp_traffic_destroy(traffic);
+    }
+}
+
+static void brake_hard(void)
+{
+    brake(&road.cars[0], 6.0);
+}
+
+static void a_driver_who_brakes_enough_needs_nobody(void **unused)
+{
+    (void)unused;
+    // 20 m/s, 38 m to a standing car: 5.3 m/s^2 are enough. An oncoming one comes all the same.
+    for (int oncoming = 0; oncoming < 2; oncoming++) {
+        cp_lookout_settings settings = plain();
+        settings.ttc_s = 2.4;
+        settings.required_m_s2 = 3.5;
+        settings.confirmation_s = 0.2;
+        cp_threat threat;
+        cp_traffic *traffic = road_open(0.05);
+        road_add("own", 0.0, 0.0, 0.0, 20.0);
+        road_add("ahead", oncoming ? 80.0 : 38.0 + 4.5, 0.0, oncoming ? CP_PI : 0.0,
+                 oncoming ? 20.0 : 0.0);
+        assert_int_equal(find_threat_driving(traffic, &settings, brake_hard, &threat), oncoming);
+        if (oncoming)
+            assert_true(threat.instant_s < 0.3);
+        cp_traffic_destroy(traffic);
+    }
+}
+
+static void where_a_tight_corner_leads_is_not_known(void **unused)
+{
+    (void)unused;
+    // 7 m/s round a corner of 4 m, 1.2 g, past a car waiting straight ahead; the same without a
+    // corner.
+    for (int turns = 0; turns < 2; turns++) {
+        cp_lookout_settings settings = plain();
+        settings.confirmation_s = 0.1;
+        cp_threat threat;
+        cp_traffic *traffic = road_open(0.05);
+        road_add("own", 0.0, 0.0, 0.0, 7.0)->curvature_1_m = turns ? 0.25 : 0.0;
+        road_add("waiting", turns ? 6.0 : 10.0, turns ? 4.2 : 0.0, CP_PI, 0.0);
+        road.time_s = turns ? 4.3 : 0.0; // the first 0.7 s of the corner
+        assert_int_equal(find_threat(traffic, &settings, &threat), !turns);
+        cp_traffic_destroy(traffic);
+    }
+}
+
 // To the left and straight again.
 static void move_within_the_lane(void)
 {
@@ -258,6 +325,9 @@ int main(void)
         cmocka_unit_test(classes_are_switched_one_by_one),
         cmocka_unit_test(cars_waiting_beside_a_turn_are_no_threat),
         cmocka_unit_test(a_car_that_stops_beside_the_way_is_no_threat),
+        cmocka_unit_test(a_car_that_will_be_past_is_no_threat),
+        cmocka_unit_test(a_driver_who_brakes_enough_needs_nobody),
+        cmocka_unit_test(where_a_tight_corner_leads_is_not_known),
         cmocka_unit_test(moving_a_little_within_the_lane_is_no_threat),
         cmocka_unit_test(what_is_hidden_is_not_known),
         cmocka_unit_test(some_targets_are_never_detected),

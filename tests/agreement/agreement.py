@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""agreement.py BUILD SOURCE [NETWORK ...]: SUMO's own collision reports against our contacts.
+"""agreement.py BUILD SOURCE [--output TABLE.md] [NETWORK ...]: SUMO's own collision reports against our
+contacts, and what crashes were found.
 
 Runs every network named (default: all) at step lengths 0.1 and 0.05 s through 'crashpulse run' and
 holds SUMO's collisions against what the database says of the same pair:
@@ -12,8 +13,9 @@ holds SUMO's collisions against what the database says of the same pair:
 Our crashes that SUMO lacks are counted by where they are, which is why SUMO has none: it looks at cars
 of one lane and at foes inside a junction, neither at cars on the lanes of opposite directions or of
 two edges beside a junction (road) nor at those inside a junction without right-of-way rules
-(unregulated junction), and misses corners inside the others. Exit status 1 when a collision of SUMO
+(XX when a collision of SUMO
 is unexplained, a match is off in time, or there are fewer than AGREEMENT_LEAST."""
+import argparse
 import collections
 import gzip
 import math
@@ -21,12 +23,19 @@ import os
 import pathlib
 import shutil
 import sqlite3
+import statistics
 import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree
 
-build, source = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("build", type=pathlib.Path)
+parser.add_argument("source", type=pathlib.Path)
+parser.add_argument("network", nargs="*", help="default: all")
+parser.add_argument("--output", type=pathlib.Path, help="a table in Markdown")
+arguments = parser.parse_args()
+build, source = arguments.build.resolve(), arguments.source.resolve()
 seconds = float(os.environ.get("AGREEMENT_SECONDS", "0"))
 least = int(os.environ.get("AGREEMENT_LEAST", "0"))  # reports of SUMO that each run must have
 steps = [float(s) for s in os.environ.get("AGREEMENT_STEPS", "0.1 0.05").split()]
@@ -68,7 +77,8 @@ def run(folder, name, step):
     study = folder / f"{name}_{step}.yaml"
     study.write_text(
         f"study: {name}\ndesign: independent\nseed: 7\nreplications: 1\n"
-        f"duration_s: {seconds or duration}\nstep_length_s: {step}\nscenarios:\n"
+        f"duration_s: {seconds or duration}\nstep_length_s: {step}\nbackground: {{duration_s: 0}}\n"
+        f"scenarios:\n"
         f"  - name: {name}\n    sumocfg: {copy / configuration.name}\n"
         + (f"    driver_errors:\n{models}\n" if errors else "")
         + f"variants:\n  - name: baseline\nvehicles:\n"
@@ -80,12 +90,12 @@ def run(folder, name, step):
 
 
 def junctions(configuration):
-    """Outlines of the junctions of a configuration's network, with their types."""
+    """Outlines of the junctions of a configuration's network, with their types and names."""
     network = xml.etree.ElementTree.parse(configuration).find(".//net-file").get("value")
     path = configuration.parent / network
     with (gzip.open if path.suffix == ".gz" else open)(path, "rb") as file:
-        return [(junction.get("type"), [tuple(map(float, point.split(",")[:2]))
-                                        for point in junction.get("shape").split()])
+        return [(junction.get("type"), junction.get("id"), [tuple(map(float, point.split(",")[:2]))
+                                                            for point in junction.get("shape").split()])
                 for junction in xml.etree.ElementTree.parse(file).getroot().iter("junction")
                 if junction.get("type") != "internal" and junction.get("shape")]
 
@@ -105,9 +115,41 @@ def distance_m(point, outline):
 
 def place_of(point, outlines):
     """Where a crash is: in or within a car's width of a junction, by its type, or on a road."""
-    kind, gap_m = min(((kind, distance_m(point, outline)) for kind, outline in outlines),
-                      key=lambda found: found[1])
+    kind, _, gap_m = nearest_junction(point, outlines)
     return f"{kind} junction" if gap_m < 2.0 else "road"
+
+
+def nearest_junction(point, outlines):
+    return min(((kind, name, distance_m(point, outline)) for kind, name, outline in outlines),
+               key=lambda found: found[2])
+
+
+def crash_types(database, outlines):
+    """Rows of our crashes by type and place: closing speeds least, median, most."""
+    speeds = collections.defaultdict(list)
+    for kind, x_m, y_m, speed_m_s in sqlite3.connect(database).execute(
+            "SELECT crash_type, x_m, y_m, closing_speed_m_s FROM crash"):
+        speeds[kind, place_of((x_m, y_m), outlines)].append(speed_m_s)
+    return [(kind, place, len(found), min(found), statistics.median(found), max(found))
+            for (kind, place), found in sorted(speeds.items())]
+
+
+def each_crash(database, outlines):
+    """Rows of our crashes one by one: who, how, where, and what of the other lay in a's way."""
+    rows = []
+    for time_s, kind, speed_m_s, angle_rad, overlap, x_m, y_m, a, a_m_s, a_side, b, b_m_s, b_side in \
+            sqlite3.connect(database).execute(
+                "SELECT c.time_s, c.crash_type, c.closing_speed_m_s, c.angle_rad, c.overlap_1, c.x_m, c.y_m, "
+                "a.sumo_type || ' ' || a.sumo_id, a.speed_m_s, a.contact_side, b.sumo_type || ' ' || "
+                "b.sumo_id, b.speed_m_s, b.contact_side FROM crash c JOIN crash_vehicle a ON a.crash_id = "
+                "c.id AND a.role = 'a' JOIN crash_vehicle b ON b.crash_id = c.id AND b.role = 'b' ORDER BY "
+                "c.time_s"):
+        junction, name, gap_m = nearest_junction((x_m, y_m), outlines)
+        place = f"{junction} junction {name}" if gap_m < 2.0 else f"road, {gap_m:.0f} m from junction {name}"
+        rows.append((f"{time_s:.2f}", kind, f"{speed_m_s:.1f}", f"{math.degrees(angle_rad):.0f}",
+                     "" if overlap is None else f"{overlap:.2f}", f"{a}, {a_side}, {a_m_s:.1f} m/s",
+                     f"{b}, {b_side}, {b_m_s:.1f} m/s", place))
+    return rows
 
 
 def compare(database, step, outlines):
@@ -150,10 +192,16 @@ def compare(database, step, outlines):
     return counts, reasons, ours, bad, apart
 
 
-names = sys.argv[3:] or list(NETWORKS)
+def markdown(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
+
+
+names = arguments.network or list(NETWORKS)
 columns = ["sumo", "matched", "off in time", "explained", "apart", "unexplained", "ours", "ours only"]
 print(f"{'network':20} {'step s':>6} " + " ".join(f"{c:>11}" for c in columns))
 agrees = True
+table, types, singles = [], [], []
 with tempfile.TemporaryDirectory() as folder:
     for name in names:
         for step in steps:
@@ -161,11 +209,36 @@ with tempfile.TemporaryDirectory() as folder:
             if database is None:
                 print(f"{name:20} is not here: skipped")
                 break
-            counts, reasons, ours, bad, apart = compare(database, step, junctions(NETWORKS[name][0]))
+            outlines = junctions(NETWORKS[name][0])
+            counts, reasons, ours, bad, apart = compare(database, step, outlines)
             print(f"{name:20} {step:6g} " + " ".join(f"{counts[c]:11d}" for c in columns))
             for label, counter in (("reasons", reasons), ("ours only", ours)):
                 if counter:
                     print(f"    {label}: " + ", ".join(f"{k} {v}" for k, v in sorted(counter.items())))
-            print("\n".join(apart + bad), end="\n" if apart or bad else "", flush=True)
+            print("\n".join(apart + bad), end="\n" if apart or bad else "")
+            for row in crash_types(database, outlines):
+                print("    found: {} at {}: {}, closing speed {:.1f} to {:.1f}, median {:.1f} m/s".format(
+                    row[0], row[1], row[2], row[3], row[5], row[4]))
+                types.append((name, f"{step:g}", *row[:3], *(f"{speed:.1f}" for speed in row[3:])))
+            if not NETWORKS[name][1]:
+                for row in each_crash(database, outlines):
+                    print("    without driver errors: {} s {}, {} m/s, {} degrees, overlap {}: {}; {}; {}".format(
+                        *row))
+                    singles.append((name, f"{step:g}", *row))
+            sys.stdout.flush()
+            table.append((name, f"{step:g}", *(counts[c] for c in columns),
+                          ", ".join(f"{k} {v}" for k, v in sorted(reasons.items()))))
             agrees &= not bad and counts["sumo"] >= least
+if arguments.output:
+    arguments.output.write_text("\n\n".join((
+        "# SUMO's collisions against ours, and what was found",
+        f"Made by `tests/agreement/agreement.py build . --output FILE{''.join(' ' + n for n in arguments.network)}`, "
+        "whose head says what the columns mean (`cmake --build build --target agreement` runs every network).",
+        markdown(["network", "step s", *columns, "reasons"], table),
+        "## Crashes by type and place",
+        "Closing speeds in m/s.",
+        markdown(["network", "step s", "type", "at", "crashes", "least", "median", "most"], types),
+        "## Every crash without driver errors",
+        markdown(["network", "step s", "time s", "type", "closing m/s", "angle", "overlap", "a", "b", "at"],
+                 singles) if singles else "None.")) + "\n")
 sys.exit(0 if agrees else 1)

@@ -1,49 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/counterfactual.h"
 
-#include "core/file.h"
-#include "run/runner.h"
-#include "store/query.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include "builders/crossing_runs.h"
 
 /* Counterfactual studies on real SUMO with real workers: the crossing of tests/run, with its cars
  * one by one in the route file, so that SUMO reads on in it during the whole run. */
 
-#define PATH_SIZE 512
-
-typedef struct fixture {
-    char folder[64];
-    char study[PATH_SIZE];
-    char worker[PATH_SIZE];
-} fixture;
-
-static void assert_ok(cp_status status, const cp_error *error)
-{
-    if (status != CP_OK)
-        fail_msg("%s: %s", cp_status_text(status), error->text);
-}
-
-static void write_text(const fixture *f, const char *name, const char *text)
-{
-    char path[PATH_SIZE];
-    cp_error error = {0};
-    snprintf(path, sizeof path, "%s/%s", f->folder, name);
-    assert_ok(cp_file_write(path, text, strlen(text), &error), &error);
-}
-
 // Long comments between the cars: the file is far longer than what SUMO reads in one go, 1 MiB.
-static void write_routes(const fixture *f)
+static void write_routes(const crossing_runs *f)
 {
     size_t room = 8 << 20, used = 0;
     char *text = malloc(room), filler[60001];
@@ -67,82 +31,8 @@ static void write_routes(const fixture *f)
         *(is_left ? &left : &through) += 1;
     }
     snprintf(text + used, room - used, "</routes>\n");
-    write_text(f, "crossing.rou.xml", text);
+    crossing_write(f, "crossing.rou.xml", text);
     free(text);
-}
-
-static void write_study(const fixture *f, const char *name, const char *design,
-                        const char *sumo_options, const char *variants)
-{
-    char text[4096], file[64];
-    snprintf(text, sizeof text,
-             "study: crossing\n"
-             "design: %s\n"
-             "seed: 5\n"
-             "replications: 1\n"
-             "duration_s: 100\n"
-             "scenarios:\n"
-             "  - name: crossing\n"
-             "    sumocfg: crossing.sumocfg\n"
-             "    sumo_options: [%s]\n"
-             "    driver_errors:\n"
-             "      - model: failed_to_see\n"
-             "        parameters: {probability_1: 1}\n"
-             "variants:\n"
-             "  - name: baseline\n"
-             "%s"
-             "vehicles:\n"
-             "  default: car.yaml\n"
-             "  types: [{type: van, model: car.yaml}]\n",
-             design, sumo_options, variants);
-    snprintf(file, sizeof file, "%s.yaml", name);
-    write_text(f, file, text);
-}
-
-static int fixture_begin(void **state)
-{
-    fixture *f = calloc(1, sizeof *f);
-    assert_non_null(f);
-    const char *build = getenv("CRASHPULSE_BUILD");
-    if (build == NULL)
-        fail_msg("CRASHPULSE_BUILD names the build folder; run this by ctest");
-    snprintf(f->folder, sizeof f->folder, "/tmp/crashpulse-test-XXXXXX");
-    assert_non_null(mkdtemp(f->folder));
-    snprintf(f->worker, PATH_SIZE, "%s/crashpulse-worker", build);
-    char cfg[2 * PATH_SIZE];
-    snprintf(cfg, sizeof cfg,
-             "<configuration><input>"
-             "<net-file value=\"%s/tests/run/crossing/crossing.net.xml\"/>"
-             "<route-files value=\"crossing.rou.xml\"/></input>"
-             "<processing><route-steps value=\"10\"/></processing></configuration>",
-             build);
-    write_text(f, "crossing.sumocfg", cfg);
-    write_text(f, "car.yaml", "vehicle: car\nparameters:\n  - {name: mass_kg, value: 1500}\n");
-    write_routes(f);
-    *state = f;
-    return 0;
-}
-
-static int fixture_end(void **state)
-{
-    fixture *f = *state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -r '%s'", f->folder);
-    int failed = system(command);
-    free(f);
-    return failed;
-}
-
-static void run(const fixture *f, const char *name)
-{
-    char study[PATH_SIZE], db[PATH_SIZE];
-    cp_runner_summary summary;
-    cp_error error = {0};
-    snprintf(study, sizeof study, "%s/%s.yaml", f->folder, name);
-    snprintf(db, sizeof db, "%s/%s.db", f->folder, name);
-    cp_runner_options options = {
-        .study_path = study, .db_path = db, .jobs = 1, .worker_path = f->worker};
-    assert_ok(cp_runner_run(&options, &summary, &error), &error);
 }
 
 static const char TREATMENTS[] = "  - name: nothing\n"
@@ -159,81 +49,77 @@ static const char TREATMENTS[] = "  - name: nothing\n"
 // write what SUMO can write.
 static int runs_begin(void **state)
 {
-    int failed = fixture_begin(state);
-    const fixture *f = *state;
+    crossing_runs *f = crossing_begin("<processing><route-steps value=\"10\"/></processing>");
+    write_routes(f);
     static const char *const DESIGNS[][2] = {{"plain", "paired_seeds"},
                                              {"pairs", "counterfactual"}};
-    for (int k = 0; failed == 0 && k < 2; k++) {
-        char options[PATH_SIZE];
+    for (int k = 0; k < 2; k++) {
+        char options[CROSSING_PATH_SIZE];
         snprintf(options, sizeof options,
                  "--fcd-output, \"%s/%s.fcd.xml\", --tripinfo-output, \"%s/%s.trip.xml\"",
                  f->folder, DESIGNS[k][0], f->folder, DESIGNS[k][0]);
-        write_study(f, DESIGNS[k][0], DESIGNS[k][1], options, k == 0 ? "" : TREATMENTS);
-        run(f, DESIGNS[k][0]);
+        crossing_write_study(f, DESIGNS[k][0], DESIGNS[k][1], "", options,
+                             k == 0 ? "" : TREATMENTS);
+        crossing_run(f, DESIGNS[k][0]);
     }
-    write_study(f, "series", "counterfactual\ncounterfactual: {time_series_s: 3}", "", TREATMENTS);
-    run(f, "series");
-    return failed;
-}
-
-static double number_of(const fixture *f, const char *name, const char *sql)
-{
-    char db[PATH_SIZE];
-    cp_store *store = NULL;
-    cp_error error = {0};
-    double value = NAN;
-    snprintf(db, sizeof db, "%s/%s.db", f->folder, name);
-    assert_ok(cp_store_open(db, CP_STORE_READ, &store, &error), &error);
-    assert_ok(cp_query_number(store, sql, &value, &error), &error);
-    cp_store_close(store);
-    return value;
+    crossing_write_study(f, "series", "counterfactual", "counterfactual: {time_series_s: 3}\n", "",
+                         TREATMENTS);
+    crossing_run(f, "series");
+    *state = f;
+    return 0;
 }
 
 static void null_treatment_reproduces_and_outcomes_add_up(void **state)
 {
-    const fixture *f = *state;
-    double crashes = number_of(f, "pairs", "SELECT count(*) FROM crash");
+    const crossing_runs *f = *state;
+    double crashes = crossing_number(f, "pairs", "SELECT count(*) FROM crash");
     assert_true(crashes >= 8);
-    assert_true(number_of(f, "pairs", "SELECT count(*) FROM null_treatment") == crashes);
-    double valid =
-        number_of(f, "pairs", "SELECT count(*) FROM null_treatment WHERE status = 'reproduced'");
+    assert_true(crossing_number(f, "pairs", "SELECT count(*) FROM null_treatment") == crashes);
+    double valid = crossing_number(
+        f, "pairs", "SELECT count(*) FROM null_treatment WHERE status = 'reproduced'");
     assert_true(valid >= 6);
-    assert_true(number_of(f, "pairs",
-                          "SELECT count(*) FROM null_treatment WHERE status NOT IN ('reproduced', "
-                          "'no_checkpoint', 'inserted_late')") == 0);
-    assert_true(number_of(f, "pairs",
-                          "SELECT count(*) FROM counterfactual_outcomes WHERE crashes <> invalid + "
-                          "changed_opponent + avoided + mitigated + aggravated + unchanged") == 0);
-    assert_true(number_of(f, "pairs", "SELECT count(*) FROM counterfactual") == 3 * crashes);
+    assert_true(
+        crossing_number(f, "pairs",
+                        "SELECT count(*) FROM null_treatment WHERE status NOT IN ('reproduced', "
+                        "'no_checkpoint', 'inserted_late')") == 0);
+    assert_true(
+        crossing_number(f, "pairs",
+                        "SELECT count(*) FROM counterfactual_outcomes WHERE crashes <> invalid + "
+                        "changed_opponent + avoided + mitigated + aggravated + unchanged") == 0);
+    assert_true(crossing_number(f, "pairs", "SELECT count(*) FROM counterfactual") == 3 * crashes);
     // No function, or one that nobody has, changes nothing.
-    assert_true(number_of(f, "pairs",
-                          "SELECT count(*) FROM counterfactual_pair WHERE variant <> 'aeb' AND "
-                          "outcome = 'unchanged' AND outcome_olc IN ('unchanged', 'no_olc') AND "
-                          "treated_closing_speed_m_s = baseline_closing_speed_m_s AND "
-                          "treated_time_s = baseline_time_s AND new_crashes = 0") == 2 * valid);
+    assert_true(
+        crossing_number(f, "pairs",
+                        "SELECT count(*) FROM counterfactual_pair WHERE variant <> 'aeb' AND "
+                        "outcome = 'unchanged' AND outcome_olc IN ('unchanged', 'no_olc') AND "
+                        "treated_closing_speed_m_s = baseline_closing_speed_m_s AND "
+                        "treated_time_s = baseline_time_s AND new_crashes = 0") == 2 * valid);
     // Braking helps in most pairs.
-    double better = number_of(f, "pairs",
-                              "SELECT count(*) FROM counterfactual_pair WHERE variant = 'aeb' AND "
-                              "outcome IN ('avoided', 'mitigated')");
+    double better =
+        crossing_number(f, "pairs",
+                        "SELECT count(*) FROM counterfactual_pair WHERE variant = 'aeb' AND "
+                        "outcome IN ('avoided', 'mitigated')");
     assert_true(better > 0.5 * valid);
     // Invalid under one treatment, invalid under all, for the same reason.
-    assert_true(number_of(f, "pairs",
-                          "SELECT count(*) FROM counterfactual AS c JOIN null_treatment AS n USING "
-                          "(crash_id) WHERE (c.outcome = 'invalid') <> (n.status <> 'reproduced') "
-                          "OR c.reason <> n.status") == 0);
-    assert_true(number_of(f, "pairs",
-                          "SELECT min(c.time_s - n.checkpoint_s - n.lead_s) FROM null_treatment AS "
-                          "n JOIN crash AS c ON c.id = n.crash_id") >= 0);
-    assert_true(number_of(f, "pairs", "SELECT min(lead_s) FROM null_treatment") >= 3.999999);
+    assert_true(
+        crossing_number(f, "pairs",
+                        "SELECT count(*) FROM counterfactual AS c JOIN null_treatment AS n USING "
+                        "(crash_id) WHERE (c.outcome = 'invalid') <> (n.status <> 'reproduced') "
+                        "OR c.reason <> n.status") == 0);
+    assert_true(
+        crossing_number(f, "pairs",
+                        "SELECT min(c.time_s - n.checkpoint_s - n.lead_s) FROM null_treatment AS "
+                        "n JOIN crash AS c ON c.id = n.crash_id") >= 0);
+    assert_true(crossing_number(f, "pairs", "SELECT min(lead_s) FROM null_treatment") >= 3.999999);
 }
 
-static void assert_same_files(const fixture *f, const char *one, const char *other)
+static void assert_same_files(const crossing_runs *f, const char *one, const char *other)
 {
-    char path[PATH_SIZE], *text[2] = {NULL, NULL};
+    char path[CROSSING_PATH_SIZE], *text[2] = {NULL, NULL};
     size_t size[2];
     const char *names[2] = {one, other};
     cp_error error = {0};
-    double seed = number_of(f, "plain", "SELECT seed FROM replication");
+    double seed = crossing_number(f, "plain", "SELECT seed FROM replication");
     for (int k = 0; k < 2; k++) {
         snprintf(path, sizeof path, "%s/crossing_baseline_%.0f_%s", f->folder, seed, names[k]);
         assert_ok(cp_file_read(path, &text[k], &size[k], &error), &error);
@@ -250,9 +136,9 @@ static void assert_same_files(const fixture *f, const char *one, const char *oth
 }
 
 // The result of a shell command on two databases.
-static void assert_same_tables(const fixture *f, const char *one, const char *other)
+static void assert_same_tables(const crossing_runs *f, const char *one, const char *other)
 {
-    char command[4 * PATH_SIZE];
+    char command[4 * CROSSING_PATH_SIZE];
     snprintf(command, sizeof command,
              "for d in %s %s; do for t in crash crash_vehicle contact sumo_collision pulse; do "
              "sqlite3 -cmd '.mode quote' %s/$d.db \"SELECT * FROM $t ORDER BY 1, 2\"; done > "
@@ -263,8 +149,8 @@ static void assert_same_tables(const fixture *f, const char *one, const char *ot
 
 static void branches_leave_the_baseline_and_its_outputs_alone(void **state)
 {
-    const fixture *f = *state;
-    assert_true(number_of(f, "pairs", "SELECT count(*) FROM counterfactual") > 0);
+    const crossing_runs *f = *state;
+    assert_true(crossing_number(f, "pairs", "SELECT count(*) FROM counterfactual") > 0);
     assert_same_files(f, "plain.fcd.xml", "pairs.fcd.xml");
     assert_same_files(f, "plain.trip.xml", "pairs.trip.xml");
     assert_same_tables(f, "plain", "pairs");
@@ -272,24 +158,28 @@ static void branches_leave_the_baseline_and_its_outputs_alone(void **state)
 
 static void time_series_on_demand(void **state)
 {
-    const fixture *f = *state;
-    assert_true(number_of(f, "pairs", "SELECT count(*) FROM counterfactual_sample") == 0);
+    const crossing_runs *f = *state;
+    assert_true(crossing_number(f, "pairs", "SELECT count(*) FROM counterfactual_sample") == 0);
     assert_same_tables(f, "plain", "series");
-    assert_true(number_of(f, "series",
-                          "SELECT count(*) FROM null_treatment AS n WHERE status = 'reproduced' "
-                          "AND (SELECT count(*) FROM counterfactual_sample AS s JOIN variant AS v "
-                          "ON v.id = s.variant_id WHERE s.crash_id = n.crash_id AND is_baseline "
-                          "AND role = 'a') NOT BETWEEN 58 AND 61") == 0);
+    assert_true(
+        crossing_number(f, "series",
+                        "SELECT count(*) FROM null_treatment AS n WHERE status = 'reproduced' "
+                        "AND (SELECT count(*) FROM counterfactual_sample AS s JOIN variant AS v "
+                        "ON v.id = s.variant_id WHERE s.crash_id = n.crash_id AND is_baseline "
+                        "AND role = 'a') NOT BETWEEN 58 AND 61") == 0);
     // TTC falls to the contact, brakes are asked for by AEB only, and the cars slow down then.
-    assert_true(number_of(f, "series",
-                          "SELECT min(ttc_s) FROM counterfactual_sample AS s JOIN variant AS v ON "
-                          "v.id = s.variant_id WHERE is_baseline") < 0.1);
-    assert_true(number_of(f, "series",
-                          "SELECT max(brake_request_m_s2) FROM counterfactual_sample AS s JOIN "
-                          "variant AS v ON v.id = s.variant_id WHERE v.name <> 'aeb'") == 0);
-    assert_true(number_of(f, "series",
-                          "SELECT max(brake_request_m_s2) FROM counterfactual_sample AS s JOIN "
-                          "variant AS v ON v.id = s.variant_id WHERE v.name = 'aeb'") > 8);
+    assert_true(
+        crossing_number(f, "series",
+                        "SELECT min(ttc_s) FROM counterfactual_sample AS s JOIN variant AS v ON "
+                        "v.id = s.variant_id WHERE is_baseline") < 0.1);
+    assert_true(
+        crossing_number(f, "series",
+                        "SELECT max(brake_request_m_s2) FROM counterfactual_sample AS s JOIN "
+                        "variant AS v ON v.id = s.variant_id WHERE v.name <> 'aeb'") == 0);
+    assert_true(
+        crossing_number(f, "series",
+                        "SELECT max(brake_request_m_s2) FROM counterfactual_sample AS s JOIN "
+                        "variant AS v ON v.id = s.variant_id WHERE v.name = 'aeb'") > 8);
 }
 
 int main(void)
@@ -299,5 +189,5 @@ int main(void)
         cmocka_unit_test(branches_leave_the_baseline_and_its_outputs_alone),
         cmocka_unit_test(time_series_on_demand),
     };
-    return cmocka_run_group_tests(tests, runs_begin, fixture_end);
+    return cmocka_run_group_tests(tests, runs_begin, crossing_end);
 }

@@ -79,6 +79,16 @@ bool cp_contact_is_crash(const cp_touching_body body[2], const cp_touch *touch)
     return cp_contact_goes_deep(body);
 }
 
+cp_touching_body cp_touching_body_possible(const cp_touching_body *body)
+{
+    cp_touching_body possible = *body;
+    cp_vec2 heading = cp_vec2_heading(body->rectangle.yaw_rad);
+    possible.front_velocity_m_s =
+        cp_vec2_scale(heading, cp_vec2_dot(heading, body->front_velocity_m_s));
+    possible.yaw_rate_rad_s = 0.0;
+    return possible;
+}
+
 bool cp_motion_is_impossible(const cp_touching_body *body)
 {
     const double slip_tangent = 0.364, slip_m_s = 1.5; // 20 degrees

@@ -33,4 +33,7 @@ double cp_width_in_way_m(const cp_rectangle *moving, const cp_rectangle *other);
  * sideways of its heading, or it turns about a point nearer than half its length. */
 bool cp_motion_is_impossible(const cp_touching_body *body);
 
+/* The body as it would be without that: it goes along its heading and does not turn. */
+cp_touching_body cp_touching_body_possible(const cp_touching_body *body);
+
 #endif

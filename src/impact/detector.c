@@ -180,12 +180,31 @@ static bool is_clipped_waiting(const cp_detector_scene *scene, const cp_impact *
     return true;
 }
 
-// What of SUMO's ways makes a crash of two rectangles an artefact; CONFIRMED when nothing does.
-static cp_contact_verdict filter_motion(const cp_detector_scene *scene,
-                                        const cp_vehicle_motion *const motion[2],
-                                        const cp_impact *impact)
+// Leave out what no vehicle can do; false when it would be no crash then.
+static bool is_crash_without_impossible(cp_impact *impact)
 {
     cp_touching_body body[2] = {body_of(impact, 0), body_of(impact, 1)};
+    bool is_any = false;
+    for (int role = 0; role < 2; role++) {
+        if (!cp_motion_is_impossible(&body[role]))
+            continue;
+        body[role] = cp_touching_body_possible(&body[role]);
+        is_any = true;
+    }
+    cp_touch touch = {impact->contact_m, {impact->side[0], impact->side[1]}};
+    if (is_any && !cp_contact_is_crash(body, &touch))
+        return false;
+    for (int role = 0; role < 2; role++) {
+        impact->front_velocity_m_s[role] = body[role].front_velocity_m_s;
+        impact->yaw_rate_rad_s[role] = body[role].yaw_rate_rad_s;
+    }
+    return true;
+}
+
+// What of SUMO's ways makes a crash of two rectangles an artefact; CONFIRMED when nothing does.
+static cp_contact_verdict filter_motion(const cp_detector_scene *scene,
+                                        const cp_vehicle_motion *const motion[2], cp_impact *impact)
+{
     if (!motion[0]->was_present || !motion[1]->was_present)
         return CP_CONTACT_AT_INSERTION;
     if (cp_motion_is_jump(motion[0], scene->step_length_s) ||
@@ -193,7 +212,7 @@ static cp_contact_verdict filter_motion(const cp_detector_scene *scene,
         return CP_CONTACT_LANE_CHANGE_JUMP;
     if (impact->verdict == CP_CONTACT_GRAZE)
         return CP_CONTACT_GRAZE;
-    if (cp_motion_is_impossible(&body[0]) || cp_motion_is_impossible(&body[1]))
+    if (!is_crash_without_impossible(impact))
         return CP_CONTACT_IMPOSSIBLE_MOTION;
     for (int role = 0; role < 2; role++)
         if (is_on_bent_part(&impact->state[role], impact->yaw_rate_rad_s[role], impact->contact_m))

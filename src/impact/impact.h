@@ -17,7 +17,9 @@
  * lane_change_jump: SUMO moved one sideways onto the other within a step.
  *
  * impossible_motion: one slides sideways or turns as no vehicle can (cp_motion_is_impossible): SUMO
- * lays rectangles along every kink of a lane.
+ * lays rectangles along every kink of a lane; and without that it would be no crash. (With it or
+ * without, it is one: then it is confirmed, and that part of the motion left out of the state. A
+ * car that brakes to rest in a lane change turns on the spot in SUMO.)
  *
  * clipped_waiting: one of them stands, less than half a width lies in the other's way, and no
  * driver error is at work on either: SUMO's junctions leave corners of waiting cars in the way.

@@ -278,6 +278,24 @@ static void a_corner_of_a_waiting_car_is_clipped_unless_somebody_errs(void **sta
     }
 }
 
+static void what_turns_on_the_spot_is_struck_like_what_stands(void **state)
+{
+    (void)state;
+    // A car that has braked to rest in a lane change, as SUMO turns it, and an oncoming one.
+    drive turning = {.yaw_rate_rad_s = 0.4}, oncoming = {.x_m = 6.0, .yaw_rad = CP_PI};
+    oncoming.speed_m_s = 5.0;
+    cp_impact struck = watch_pair(turning, oncoming, 0.05);
+    assert_int_equal(struck.verdict, CP_CONTACT_CONFIRMED);
+    assert_int_equal(struck.side[0], CP_SIDE_FRONT);
+    assert_true(struck.yaw_rate_rad_s[0] == 0.0);
+    assert_near(struck.front_velocity_m_s[1].x, -5.0, 1e-9);
+
+    // Its rear swings into one that passes: nobody drove into anybody.
+    drive swinging = {.yaw_rate_rad_s = -0.4};
+    drive passing = {.x_m = -1.0, .y_m = 1.95, .speed_m_s = 5.0};
+    assert_int_equal(watch_pair(swinging, passing, 0.05).verdict, CP_CONTACT_IMPOSSIBLE_MOTION);
+}
+
 static cp_status relation_of_test(const void *context, const cp_vehicle_state *one,
                                   const cp_vehicle_state *other, cp_road_relation *relation,
                                   cp_error *error)
@@ -633,6 +651,7 @@ int main(void)
         cmocka_unit_test(a_confirmed_pair_is_reported_once_for_ever),
         cmocka_unit_test(after_a_graze_a_pair_that_parted_can_crash),
         cmocka_unit_test(a_corner_of_a_waiting_car_is_clipped_unless_somebody_errs),
+        cmocka_unit_test(what_turns_on_the_spot_is_struck_like_what_stands),
         cmocka_unit_test(what_drives_over_a_bridge_hits_nobody_below),
         cmocka_unit_test(a_trailing_part_counts_where_it_follows_the_front),
         cmocka_unit_test(neighbours_never_touch),

@@ -51,6 +51,59 @@ class Names
     std::vector<const std::string *> names_;
 };
 
+// A vehicle between departure and arrival.
+struct Driving {
+    uint32_t vehicle;
+    const std::string *id;
+};
+
+// Vehicles by number and id. Numbers and texts are for good: contacts name vehicles that have long
+// gone. The way from the id to the number, which takes most room, is kept only while SUMO has it.
+class Vehicles
+{
+  public:
+    Driving find(const std::string &id)
+    {
+        auto [entry, is_new] = numbers_.try_emplace(id, static_cast<uint32_t>(texts_.size()));
+        if (is_new)
+            texts_.push_back(keep(id));
+        return {entry->second, &entry->first}; // keys of an unordered_map stay where they are
+    }
+    bool has(uint32_t vehicle) const
+    {
+        return vehicle < texts_.size();
+    }
+    const char *text(uint32_t vehicle) const
+    {
+        return has(vehicle) ? texts_[vehicle] : "";
+    }
+    void forget_id(const std::string &id)
+    {
+        numbers_.erase(id);
+    }
+
+  private:
+    // A copy that stays where it is.
+    const char *keep(const std::string &id)
+    {
+        const size_t size = id.size() + 1, block = 16384;
+        if (blocks_.empty() || used_ + size > room_) {
+            room_ = std::max(size, block);
+            blocks_.push_back(std::make_unique<char[]>(room_));
+            used_ = 0;
+        }
+        char *const text = &blocks_.back()[used_];
+        std::copy_n(id.c_str(), size, text);
+        used_ += size;
+        return text;
+    }
+
+    std::unordered_map<std::string, uint32_t> numbers_;
+    std::vector<const char *> texts_;
+    std::vector<std::unique_ptr<char[]>> blocks_;
+    size_t used_ = 0, room_ = 0; // of the last block
+};
+
 struct Size {
     double length_m;
     double width_m;
@@ -65,14 +118,16 @@ struct SpeedCommand {
 struct Bridge {
     bool running = false;
     std::string command_line;
-    Names vehicles, types, lanes, lights, collision_types;
+    Vehicles vehicles;
+    Names types, lanes, lights, collision_types;
     std::vector<Size> size_of_type;
     std::vector<cp_vehicle_state> states;
     std::vector<uint32_t> departed, gone, present, present_before;
-    std::vector<uint32_t> under_way;        // departed and not arrived, by id
+    std::vector<Driving> under_way;         // departed and not arrived, by id
+    std::vector<std::string> leaving;       // ids of those who went in this step
     std::vector<uint32_t> type_of, lane_of; // by vehicle number: as last seen
     bool reads_places = true;
-    std::vector<uint64_t> seen_in_step; // by vehicle number
+    std::vector<uint8_t> seen_in_step; // by vehicle number: last bits of the number of the step
     uint64_t step = 0;
     std::vector<cp_sumo_collision> collisions;
     std::vector<SpeedCommand> speed_commands; // since the last step
@@ -306,10 +361,10 @@ void read_place(const std::string &id, cp_vehicle_state *state)
 enum class Where { ON_THE_ROAD, ELSEWHERE, GONE };
 
 // Read one vehicle, if it is on the road.
-Where read_vehicle(uint32_t vehicle, cp_vehicle_state *state)
+Where read_vehicle(const Driving &driving, cp_vehicle_state *state)
 {
     using libsumo::Vehicle;
-    const std::string &id = *bridge->vehicles.name(vehicle);
+    const std::string &id = *driving.id;
     libsumo::TraCIPosition position;
     try {
         position = Vehicle::getPosition(id, true);
@@ -319,7 +374,7 @@ Where read_vehicle(uint32_t vehicle, cp_vehicle_state *state)
     if (position.x <= -1e9 || position.y <= -1e9)
         return Where::ELSEWHERE;
     *state = cp_vehicle_state{};
-    state->vehicle = vehicle;
+    state->vehicle = driving.vehicle;
     state->type = type_of_vehicle(id, state->vehicle);
     if (bridge->reads_places)
         read_place(id, state);
@@ -337,21 +392,25 @@ Where read_vehicle(uint32_t vehicle, cp_vehicle_state *state)
 // ids too, costs as much as reading a state: it copies every id.
 void keep_account()
 {
-    const auto by_id = [](uint32_t vehicle, const std::string &id) {
-        return *bridge->vehicles.name(vehicle) < id;
-    };
-    std::vector<uint32_t> &all = bridge->under_way;
+    const auto by_id = [](const Driving &one, const std::string &id) { return *one.id < id; };
+    std::vector<Driving> &all = bridge->under_way;
+    for (const std::string &id : bridge->leaving)
+        bridge->vehicles.forget_id(id);
+    bridge->leaving.clear();
     bridge->departed.clear();
     for (const std::string &id : libsumo::Simulation::getDepartedIDList()) {
-        bridge->departed.push_back(bridge->vehicles.number(id));
+        const Driving comer = bridge->vehicles.find(id);
+        bridge->departed.push_back(comer.vehicle);
         const auto place = std::lower_bound(all.begin(), all.end(), id, by_id);
-        if (place == all.end() || *place != bridge->departed.back())
-            all.insert(place, bridge->departed.back());
+        if (place == all.end() || place->vehicle != comer.vehicle)
+            all.insert(place, comer);
     }
     for (const std::string &id : libsumo::Simulation::getArrivedIDList()) {
         const auto place = std::lower_bound(all.begin(), all.end(), id, by_id);
-        if (place != all.end() && *bridge->vehicles.name(*place) == id)
-            all.erase(place);
+        if (place == all.end() || *place->id != id)
+            continue;
+        all.erase(place);
+        bridge->leaving.push_back(id);
     }
 }
 
@@ -362,7 +421,7 @@ void check_account()
     const bool is_right =
         std::equal(listed.begin(), listed.end(), bridge->present.begin(), bridge->present.end(),
                    [](const std::string &id, uint32_t vehicle) {
-                       return id == *bridge->vehicles.name(vehicle);
+                       return id == bridge->vehicles.text(vehicle);
                    });
     if (!is_right)
         throw std::logic_error("there are " + std::to_string(listed.size()) +
@@ -380,26 +439,29 @@ void step()
     bridge->present_before.swap(bridge->present);
     bridge->present.clear();
     bridge->states.clear();
+    const uint8_t this_step = static_cast<uint8_t>(bridge->step);
     size_t kept = 0;
-    for (uint32_t vehicle : bridge->under_way) {
+    for (const Driving &driving : bridge->under_way) {
         cp_vehicle_state state;
-        const Where where = read_vehicle(vehicle, &state);
-        if (where != Where::GONE)
-            bridge->under_way[kept++] = vehicle;
+        const Where where = read_vehicle(driving, &state);
+        if (where == Where::GONE)
+            bridge->leaving.push_back(*driving.id);
+        else
+            bridge->under_way[kept++] = driving;
         if (where != Where::ON_THE_ROAD)
             continue;
         bridge->states.push_back(state);
-        bridge->present.push_back(vehicle);
-        if (vehicle >= bridge->seen_in_step.size())
-            bridge->seen_in_step.resize(2 * static_cast<size_t>(vehicle) + 64, 0);
-        bridge->seen_in_step[vehicle] = bridge->step;
+        bridge->present.push_back(state.vehicle);
+        if (state.vehicle >= bridge->seen_in_step.size())
+            bridge->seen_in_step.resize(2 * static_cast<size_t>(state.vehicle) + 64, 0);
+        bridge->seen_in_step[state.vehicle] = this_step;
     }
-    bridge->under_way.resize(kept);
+    bridge->under_way.resize(kept, {});
     if (bridge->step % steps_between_checks == 1)
         check_account();
     bridge->gone.clear();
     for (uint32_t vehicle : bridge->present_before)
-        if (bridge->seen_in_step[vehicle] != bridge->step)
+        if (bridge->seen_in_step[vehicle] != this_step)
             bridge->gone.push_back(vehicle);
 }
 
@@ -513,11 +575,10 @@ cp_status command_vehicle(const char *what, uint32_t vehicle, cp_error *error, C
     cp_status status = need_running(error);
     if (status != CP_OK)
         return status;
-    const std::string *id = bridge->vehicles.name(vehicle);
-    if (!id)
+    if (!bridge->vehicles.has(vehicle))
         return cp_fail(error, CP_TRAFFIC_FAILED, "%s: there is no vehicle number %u", what,
                        static_cast<unsigned>(vehicle));
-    return guarded(what, CP_TRAFFIC_FAILED, error, [&] { call(*id); });
+    return guarded(what, CP_TRAFFIC_FAILED, error, [&] { call(bridge->vehicles.text(vehicle)); });
 }
 
 // Whether a command is the one to hold among those before the coming step.
@@ -648,8 +709,8 @@ cp_status sumo_bridge_collisions(const cp_sumo_collision **collisions, size_t *c
         bridge->collisions.clear();
         for (const libsumo::TraCICollision &collision : libsumo::Simulation::getCollisions()) {
             uint32_t type = bridge->collision_types.number(collision.type);
-            bridge->collisions.push_back({bridge->vehicles.number(collision.collider),
-                                          bridge->vehicles.number(collision.victim),
+            bridge->collisions.push_back({bridge->vehicles.find(collision.collider).vehicle,
+                                          bridge->vehicles.find(collision.victim).vehicle,
                                           bridge->collision_types.text(type)});
         }
     });

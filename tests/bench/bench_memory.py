@@ -8,8 +8,9 @@ side by side. In each of N equal periods of simulated time: vehicles on the road
 with what of it is anonymous, that is the process's own; the rest are pages of program and library files,
 which processes share. The peak includes the surrogate's crashes and the database at the end.
 
-SUMO's summary output, written by all three, tells how far a process is. Exit status 1 when a bar is missed:
-peak of the worker / plain sumo's, and growth of the worker from the first period to the last."""
+SUMO's summary output, written by all three, tells how far a process is. Exit status 1 when one of the --bars is
+missed: "peak", of the worker / plain sumo's, for traffic of a size where libraries are not all there is; and
+"growth" of the worker from the first period to the last, for traffic that does not grow itself."""
 import argparse
 import collections
 import os
@@ -22,6 +23,7 @@ import sys
 import tempfile
 import time
 
+from plain_sumo import WITHOUT_SCHEMAS
 from process_memory import largest_of
 
 PEAK_BAR = 1.3     # worker's peak of resident memory / plain sumo's
@@ -101,7 +103,7 @@ def run_all(folder):
     words = shlex.split(sqlite3.connect(folder / "short/study.db").execute(
         "SELECT sumo_command_line FROM replication").fetchone()[0])
     steps = round(arguments.seconds / arguments.step)
-    every = {"sumo": ["sumo"] + words[1:] + ["--end", arguments.seconds],
+    every = {"sumo": ["sumo"] + words[1:] + WITHOUT_SCHEMAS + ["--end", arguments.seconds],
              "empty libsumo loop": [arguments.build / "bench_empty_loop", steps] + words,
              "worker": run}
     programs = []
@@ -119,6 +121,11 @@ def run_all(folder):
     return programs, crashes
 
 
+def growth_of(program):
+    """Of resident memory, from the first period to the last."""
+    return program.period(arguments.periods - 1).resident_mb / program.period(0).resident_mb - 1
+
+
 def report(programs, crashes):
     minutes = arguments.seconds / arguments.periods / 60
     lines = [f"| from minute | " + " | ".join(f"{p.label}: vehicles | resident MB | anonymous MB"
@@ -130,15 +137,17 @@ def report(programs, crashes):
             sample = program.period(number)
             cells += [f"{sample.vehicles}", f"{sample.resident_mb:.1f}", f"{sample.anonymous_mb:.1f}"]
         lines.append("| " + " | ".join(cells) + " |")
-    first, last = programs[-1].period(0), programs[-1].period(arguments.periods - 1)
-    growth = last.resident_mb / first.resident_mb - 1
+    growth = growth_of(programs[-1])
     ratio = programs[-1].peak_mb / programs[0].peak_mb
-    lines += ["", f"Peak of resident memory: " +
+    peak_bar = f", bar {PEAK_BAR}" if "peak" in arguments.bars else ""
+    growth_bar = f", bar {100 * GROWTH_BAR:.0f} %" if "growth" in arguments.bars else ""
+    lines += ["", "Peak of resident memory: " +
               ", ".join(f"{p.label} {p.peak_mb:.1f} MB" for p in programs) +
-              f". The worker's over plain sumo's: {ratio:.2f}, bar {PEAK_BAR}.",
-              f"The worker's growth from the first period to the last: {100 * growth:+.1f} %, bar "
-              f"{100 * GROWTH_BAR:.0f} %; it found {crashes} crashes."]
-    return "\n".join(lines) + "\n", ratio <= PEAK_BAR and growth <= GROWTH_BAR
+              f". The worker's over plain sumo's: {ratio:.2f}{peak_bar}.",
+              f"Growth from the first period to the last: worker {100 * growth:+.1f} %{growth_bar}, plain sumo "
+              f"{100 * growth_of(programs[0]):+.1f} %; the worker found {crashes} crashes."]
+    is_missed = (peak_bar and ratio > PEAK_BAR) or (growth_bar and growth > GROWTH_BAR)
+    return "\n".join(lines) + "\n", not is_missed
 
 
 parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
@@ -151,6 +160,7 @@ parser.add_argument("--step", type=float, default=0.1, help="step length, s")
 parser.add_argument("--without-loop", action="store_true", help="no empty libsumo loop")
 parser.add_argument("--periods", type=int, default=10)
 parser.add_argument("--interval", type=float, default=1.0, help="between two samples, s")
+parser.add_argument("--bars", choices=["peak", "growth"], nargs="+", default=["peak", "growth"])
 parser.add_argument("--output")
 arguments = parser.parse_args()
 with tempfile.TemporaryDirectory() as name:

@@ -19,6 +19,7 @@ import sys
 import tempfile
 import threading
 
+from plain_sumo import WITHOUT_SCHEMAS
 from process_memory import largest_of
 
 build, source = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
@@ -99,7 +100,7 @@ with tempfile.TemporaryDirectory() as name:
     words = shlex.split(exposure(folder, LONG_S)[1])
     here = pathlib.Path(__file__).parent
     programs = {
-        "sumo": lambda s: ["sumo"] + words[1:] + ["--end", s],
+        "sumo": lambda s: ["sumo"] + words[1:] + WITHOUT_SCHEMAS + ["--end", s],
         "empty libsumo loop": lambda s: [build / "bench_empty_loop", round(s / STEP_S)] + words,
         "crashpulse run": lambda s: crashpulse_words(folder, s),
         "Python libsumo script": lambda s: [python, here / "bench_python_loop.py",
@@ -119,7 +120,7 @@ with tempfile.TemporaryDirectory() as name:
             for label, program in programs.items()}
     # What a user sees who runs the configuration by himself: no random numbers of its own for every lane.
     alone = peak_of(["sumo", "-c", words[words.index("-c") + 1], "--scale", "2", "--step-length", STEP_S,
-                     "--no-step-log", "true", "--end", LONG_S], "")
+                     "--no-step-log", "true", "--end", LONG_S] + WITHOUT_SCHEMAS, "")
 
 steps = (LONG_S - SHORT_S) / STEP_S
 cost = {label: (used[LONG_S] - used[SHORT_S]) / steps * 1e3 for label, used in least.items()}

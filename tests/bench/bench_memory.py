@@ -45,7 +45,7 @@ def study(seconds):
         "--summary-output.period, "
         f"'{max(arguments.step, arguments.seconds / 6000):g}']")
     return (f"study: memory\ndesign: independent\nseed: 20261122\nreplications: 1\nduration_s: {seconds}\n"
-            f"step_length_s: {arguments.step}\n{scenarios}variants:\n  - name: baseline\n"
+            f"step_length_s: {arguments.step}\nbackground: {{duration_s: 0}}\n{scenarios}variants:\n  - name: baseline\n"
             "vehicles:\n  default: mid_size\n")
 
 

@@ -74,7 +74,7 @@ def study(folder, duration_s):
         f"step_length_s: {STEP_S}\nscenarios:\n  - name: town\n"
         f"    sumocfg: {source}/sumo_scenarios/town/town.sumocfg\n"
         "    sumo_options: [--scale, '2']\nvariants:\n  - name: baseline\n"
-        "vehicles:\n  default: mid_size\n")
+        "vehicles:\n  default: mid_size\nbackground: {duration_s: 0}\n")
     return path
 
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "traffic/traffic.h"
 
+#include "core/link_pages.h"
+
 static const cp_traffic_source SUMO = {
     .step = sumo_bridge_step,
     .departed = sumo_bridge_departed,
@@ -32,6 +34,8 @@ cp_status cp_traffic_create(const cp_traffic_options *options, cp_traffic **traf
                                          options->options, options->option_count, error);
     if (status != CP_OK)
         return status;
+    // SUMO has read its network: what loading it and its libraries has touched is not needed again.
+    cp_link_pages_release();
     status = cp_traffic_create_from(&SUMO, options->step_length_s, traffic, error);
     if (status != CP_OK)
         sumo_bridge_stop();

@@ -3,41 +3,40 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define SPEED_MODE_OURS 27
 
-static cp_status reserve(cp_actuation *actuation, uint32_t vehicle, cp_error *error)
+static cp_actuation_car *find(const cp_actuation *actuation, uint32_t vehicle)
 {
-    if (vehicle >= actuation->numbers) {
-        size_t numbers = 2 * ((size_t)vehicle + 1);
-        cp_actuation_car *cars = realloc(actuation->cars, numbers * sizeof *cars);
+    for (size_t k = 0; k < actuation->count; k++)
+        if (actuation->cars[k].vehicle == vehicle)
+            return &actuation->cars[k];
+    return NULL;
+}
+
+static cp_status add(cp_actuation *actuation, uint32_t vehicle, cp_actuation_car **added,
+                     cp_error *error)
+{
+    if (actuation->count == actuation->room) {
+        size_t room = actuation->room ? 2 * actuation->room : 8;
+        cp_actuation_car *cars = realloc(actuation->cars, room * sizeof *cars);
         if (!cars)
             return cp_fail_memory(error, "actuation");
-        memset(&cars[actuation->numbers], 0, (numbers - actuation->numbers) * sizeof *cars);
         actuation->cars = cars;
-        actuation->numbers = numbers;
+        actuation->room = room;
     }
-    if (actuation->taken_count == actuation->taken_room) {
-        size_t room = actuation->taken_room ? 2 * actuation->taken_room : 8;
-        uint32_t *taken = realloc(actuation->taken, room * sizeof *taken);
-        if (!taken)
-            return cp_fail_memory(error, "actuation");
-        actuation->taken = taken;
-        actuation->taken_room = room;
-    }
+    *added = &actuation->cars[actuation->count++];
+    **added = (cp_actuation_car){.vehicle = vehicle};
     return CP_OK;
 }
 
 cp_status cp_actuation_request(cp_actuation *actuation, uint32_t vehicle, double speed_m_s,
                                double deceleration_m_s2, cp_error *error)
 {
-    cp_status status = reserve(actuation, vehicle, error);
+    cp_actuation_car *car = find(actuation, vehicle);
+    cp_status status = car ? CP_OK : add(actuation, vehicle, &car, error);
     if (status != CP_OK)
         return status;
-    cp_actuation_car *car = &actuation->cars[vehicle];
-    if (!car->is_requested && !car->is_taken)
-        actuation->taken[actuation->taken_count++] = vehicle;
     car->request_m_s = car->is_requested ? fmin(car->request_m_s, speed_m_s) : speed_m_s;
     car->deceleration_m_s2 =
         car->is_requested ? fmax(car->deceleration_m_s2, deceleration_m_s2) : deceleration_m_s2;
@@ -71,35 +70,28 @@ cp_status cp_actuation_apply(cp_actuation *actuation, const cp_traffic *traffic,
     const cp_traffic_source *commands = cp_traffic_commands(traffic);
     cp_status status = CP_OK;
     size_t kept = 0;
-    for (size_t k = 0; k < actuation->taken_count && status == CP_OK; k++) {
-        uint32_t vehicle = actuation->taken[k];
-        cp_actuation_car *car = &actuation->cars[vehicle];
-        if (!cp_traffic_motion_of(traffic, vehicle)) {
-            *car = (cp_actuation_car){0}; // it has left the road
-            continue;
-        }
-        status = car->is_requested ? command(car, commands, vehicle, error)
-                                   : hand_back(car, commands, vehicle, error);
-        if (!car->is_requested)
-            car->deceleration_m_s2 = 0.0;
+    for (size_t k = 0; k < actuation->count && status == CP_OK; k++) {
+        cp_actuation_car *car = &actuation->cars[k];
+        if (!cp_traffic_motion_of(traffic, car->vehicle))
+            continue; // it has left the road
+        status = car->is_requested ? command(car, commands, car->vehicle, error)
+                                   : hand_back(car, commands, car->vehicle, error);
         car->is_requested = false;
         if (car->is_taken)
-            actuation->taken[kept++] = vehicle;
+            actuation->cars[kept++] = *car;
     }
-    actuation->taken_count = kept;
+    actuation->count = kept;
     return status;
 }
 
 double cp_actuation_deceleration_m_s2(const cp_actuation *actuation, uint32_t vehicle)
 {
-    return vehicle < actuation->numbers && actuation->cars[vehicle].is_taken
-               ? actuation->cars[vehicle].deceleration_m_s2
-               : 0.0;
+    const cp_actuation_car *car = find(actuation, vehicle);
+    return car && car->is_taken ? car->deceleration_m_s2 : 0.0;
 }
 
 void cp_actuation_destroy(cp_actuation *actuation)
 {
     free(actuation->cars);
-    free(actuation->taken);
     *actuation = (cp_actuation){0};
 }

@@ -10,6 +10,7 @@
  * deceleration of the vehicle type, so that it may brake harder still but not less), the first step
  * without one hands it back as it was. */
 typedef struct cp_actuation_car {
+    uint32_t vehicle;
     double request_m_s;       /* lowest of this step; valid if is_requested */
     double deceleration_m_s2; /* largest of this step */
     int driver_mode;          /* SUMO's speed mode before we took over */
@@ -19,11 +20,9 @@ typedef struct cp_actuation_car {
 
 /* Zero-initialise, request and apply in every step, destroy. */
 typedef struct cp_actuation {
-    cp_actuation_car *cars; /* by vehicle number */
-    size_t numbers;
-    uint32_t *taken; /* vehicles that are ours or requested in this step */
-    size_t taken_count;
-    size_t taken_room;
+    cp_actuation_car *cars; /* those that are ours or requested in this step, few of all */
+    size_t count;
+    size_t room;
 } cp_actuation;
 
 /* Ask for a speed (>= 0) of a vehicle on the road at the end of the coming step; deceleration_m_s2

@@ -10,6 +10,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A counted crash with all that the surrogate needs to know of it. */
+typedef struct named_crash {
+    const cp_found_contact *found; /* of the simulation, which finds no more */
+    cp_impact_names names;
+    char *id[2];
+    char *type[2];
+} named_crash;
+
 // What is happening in a replication; what is known about it is const.
 typedef struct replication_run {
     const cp_study *study;
@@ -17,6 +25,8 @@ typedef struct replication_run {
     const cp_study_scenario *scenario;
     cp_simulation simulation;
     cp_counterfactual *counterfactual; /* NULL in other designs */
+    named_crash *named;                /* in the order they were found */
+    size_t named_count;
     cp_result_rows *results;
 } replication_run;
 
@@ -51,36 +61,76 @@ static cp_status run_steps(replication_run *run, cp_error *error)
 
 // ---- what was found ------------------------------------------------------------------------
 
+static bool is_counted(const cp_found_contact *found)
+{
+    return found->found_as == CP_FOUND_CRASH;
+}
+
 // Number of a found crash among those that count.
 static size_t number_of(const cp_simulation *simulation, size_t index)
 {
     size_t number = 0;
-    if (index == CP_FOLLOWS_NONE || simulation->found[index].found_as != CP_FOUND_CRASH)
+    if (index == CP_FOLLOWS_NONE || !is_counted(&simulation->found[index]))
         return CP_FOLLOWS_NONE;
     for (size_t k = 0; k < index; k++)
-        number += simulation->found[k].found_as == CP_FOUND_CRASH;
+        number += is_counted(&simulation->found[k]);
     return number;
 }
 
-static cp_status record_crash(replication_run *run, const cp_found_contact *found, cp_error *error)
+// All that SUMO knows of the two cars of a crash; the texts are the row's own names later on.
+static cp_status name_crash(const replication_run *run, const cp_found_contact *found,
+                            named_crash *named, cp_error *error)
 {
-    cp_simulation *simulation = &run->simulation;
     const cp_impact *impact = &found->impact;
-    cp_impact_names names = {.sumocfg_path = run->simulation.sumocfg_path};
+    *named = (named_crash){.found = found, .names.sumocfg_path = run->simulation.sumocfg_path};
     for (int role = 0; role < 2; role++) {
-        names.sumo_id[role] = sumo_bridge_vehicle_id(impact->vehicle[role]);
-        names.sumo_type[role] = sumo_bridge_type_id(impact->state[role].type);
-        names.at_fault[role] = found->at_fault[role];
-        names.had_crashed[role] = found->had_crashed[role];
-        cp_status status = sumo_bridge_type(names.sumo_type[role], &names.type[role], error);
+        named->names.at_fault[role] = found->at_fault[role];
+        named->names.had_crashed[role] = found->had_crashed[role];
+        named->id[role] = strdup(sumo_bridge_vehicle_id(impact->vehicle[role]));
+        named->type[role] = strdup(sumo_bridge_type_id(impact->state[role].type));
+        if (named->id[role] == NULL || named->type[role] == NULL)
+            return cp_fail_memory(error, "crash");
+        named->names.sumo_id[role] = named->id[role];
+        named->names.sumo_type[role] = named->type[role];
+        cp_status status = sumo_bridge_type(named->type[role], &named->names.type[role], error);
         if (status != CP_OK)
             return status;
     }
+    return CP_OK;
+}
+
+static cp_status name_crashes(replication_run *run, cp_error *error)
+{
+    const cp_simulation *simulation = &run->simulation;
+    run->named = calloc(simulation->found_count + 1, sizeof *run->named);
+    if (run->named == NULL)
+        return cp_fail_memory(error, "crashes");
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < simulation->found_count; k++)
+        if (is_counted(&simulation->found[k]))
+            status = name_crash(run, &simulation->found[k], &run->named[run->named_count++], error);
+    return status;
+}
+
+static void forget_names(replication_run *run)
+{
+    for (size_t k = 0; k < run->named_count; k++)
+        for (int role = 0; role < 2; role++) {
+            free(run->named[k].id[role]);
+            free(run->named[k].type[role]);
+        }
+    free(run->named);
+}
+
+static cp_status record_crash(replication_run *run, const named_crash *named, cp_error *error)
+{
+    cp_simulation *simulation = &run->simulation;
     cp_crash_row *row = cp_result_rows_add_crash(run->results);
     if (row == NULL)
         return cp_fail_memory(error, "crash");
-    cp_status status = cp_crash_record_fill(impact, &names, run->fleet, row, error);
-    row->follows = number_of(simulation, found->follows);
+    cp_status status =
+        cp_crash_record_fill(&named->found->impact, &named->names, run->fleet, row, error);
+    row->follows = number_of(simulation, named->found->follows);
     if (simulation->history == NULL)
         return status;
 
@@ -89,6 +139,14 @@ static cp_status record_crash(replication_run *run, const cp_found_contact *foun
     row->history = before->rows;
     row->history_count = before->count;
     *before = (cp_found_history){.found = before->found};
+    return status;
+}
+
+static cp_status record_crashes(replication_run *run, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < run->named_count; k++)
+        status = record_crash(run, &run->named[k], error);
     return status;
 }
 
@@ -110,14 +168,12 @@ static cp_status record_contact(replication_run *run, const cp_found_contact *fo
     return CP_OK;
 }
 
-static cp_status record_found(replication_run *run, cp_error *error)
+static cp_status record_contacts(replication_run *run, cp_error *error)
 {
     cp_status status = CP_OK;
-    for (size_t k = 0; status == CP_OK && k < run->simulation.found_count; k++) {
-        const cp_found_contact *found = &run->simulation.found[k];
-        status = found->found_as == CP_FOUND_CRASH ? record_crash(run, found, error)
-                                                   : record_contact(run, found, error);
-    }
+    for (size_t k = 0; status == CP_OK && k < run->simulation.found_count; k++)
+        if (!is_counted(&run->simulation.found[k]))
+            status = record_contact(run, &run->simulation.found[k], error);
     return status;
 }
 
@@ -188,15 +244,25 @@ cp_status cp_replication_run(const cp_study *study, const cp_fleet *fleet,
     if (status == CP_OK)
         status = run_steps(&run, error);
 
-    // The surrogate runs when the traffic is over, so that nothing of it is in the way of a branch.
+    // All that SUMO has to say.
     if (status == CP_OK)
-        status = record_found(&run, error);
+        status = name_crashes(&run, error);
     if (status == CP_OK)
-        status = record_counterfactual(&run, error);
+        status = record_contacts(&run, error);
     if (status == CP_OK)
         status = record_cross_check(&run, replication, error);
     if (status == CP_OK)
         status = record_versions(&run, error);
+
+    // The surrogate runs when the traffic is over: nothing of it is in the way of a branch, and its
+    // pulses take the room that SUMO had.
+    if (status == CP_OK && run.counterfactual == NULL)
+        cp_simulation_end_traffic(&run.simulation);
+    if (status == CP_OK)
+        status = record_crashes(&run, error);
+    if (status == CP_OK)
+        status = record_counterfactual(&run, error);
+    forget_names(&run);
     cp_counterfactual_destroy(run.counterfactual);
     cp_simulation_end(&run.simulation);
     return status;

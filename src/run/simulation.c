@@ -78,6 +78,16 @@ cp_status cp_simulation_begin(const cp_study *study, const cp_study_scenario *sc
     return CP_OK;
 }
 
+void cp_simulation_end_traffic(cp_simulation *simulation)
+{
+    cp_detector_destroy(simulation->detector);
+    cp_controls_destroy(simulation->controls);
+    cp_traffic_destroy(simulation->traffic);
+    simulation->detector = NULL;
+    simulation->controls = NULL;
+    simulation->traffic = NULL;
+}
+
 void cp_simulation_end(cp_simulation *simulation)
 {
     cp_history_destroy(simulation->history);
@@ -85,9 +95,7 @@ void cp_simulation_end(cp_simulation *simulation)
         free(simulation->before[k].rows);
     free(simulation->before);
     cp_cross_check_destroy(&simulation->check);
-    cp_detector_destroy(simulation->detector);
-    cp_controls_destroy(simulation->controls);
-    cp_traffic_destroy(simulation->traffic);
+    cp_simulation_end_traffic(simulation);
     free(simulation->found);
     free(simulation->crashed);
     *simulation = (cp_simulation){0};

@@ -62,6 +62,8 @@ CP_MUST_CHECK cp_status cp_simulation_begin(const cp_study *study,
                                             const cp_study_scenario *scenario,
                                             const cp_study_variant *variant, uint64_t seed,
                                             cp_simulation *simulation, cp_error *error);
+/* End SUMO and what works on it; what was found stays. Nothing of it may be asked of SUMO then. */
+void cp_simulation_end_traffic(cp_simulation *simulation);
 void cp_simulation_end(cp_simulation *simulation);
 
 /* One step: traffic, controls, contacts; crashed cars leave the road, or stand there as long as the

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "crash/encounter.h"
 
+#include <string.h>
+
 // Number of outlines of a party: a car's, or the barrier's one.
 static int outline_count(const cp_encounter *encounter, int party)
 {
-    return encounter->car[party] != NULL ? CP_OUTLINE_COUNT : 1;
+    return encounter->car[party] != NULL ? encounter->car[party]->outline_count : 1;
 }
 
 static cp_outline outline_now(const cp_encounter *encounter, int party, int index)
@@ -30,7 +32,7 @@ static cp_vec2 pivot_of(const cp_encounter *encounter, int party)
 double cp_encounter_distance(const cp_encounter *encounter, const cp_displacement displacement[2],
                              double limit_m)
 {
-    cp_outline outline[2][CP_OUTLINE_COUNT];
+    cp_outline outline[2][CP_OUTLINES_MAX];
     for (int party = 0; party < 2; party++) {
         cp_vec2 pivot_m = pivot_of(encounter, party);
         for (int k = 0; k < outline_count(encounter, party); k++)
@@ -128,80 +130,75 @@ static cp_crush_block *block_of(const cp_encounter *encounter, int party, int in
                                                          : NULL;
 }
 
-static cp_encounter_pair *pair_of(cp_encounter *encounter, int party, int own, int other)
-{
-    return party == 0 ? &encounter->pair[own][other] : &encounter->pair[other][own];
-}
-
 // A block gives way only to what presses on its face, not on its sides.
 static const double FACE_COSINE = 0.2;
 
-// All that presses on a block's face along its way, and how much that falls per metre of slip;
-// facing: whether any of it is a block itself.
-static double load_on_block(cp_encounter *encounter, int party, int index, double *slope_n_m,
-                            bool *facing)
+// All that presses on the faces of a party's blocks along their way, and how much that falls per
+// metre of slip; facing: whether any of it is a block itself.
+typedef struct block_loads {
+    double load_n[CP_OUTLINES_MAX];
+    double slope_n_m[CP_OUTLINES_MAX];
+    bool facing[CP_OUTLINES_MAX];
+} block_loads;
+
+static void add_load(const cp_encounter_pair *pair, int party, int own, block_loads *loads)
 {
-    double load_n = 0.0;
-    *slope_n_m = 0.0;
-    *facing = false;
-    for (int other = 0; other < outline_count(encounter, 1 - party); other++) {
-        const cp_encounter_pair *pair = pair_of(encounter, party, index, other);
-        double cosine = pair->cosine[party], weight = point_weight(&pair->manifold);
-        if (pair->manifold.count == 0 || cosine < FACE_COSINE)
+    double cosine = pair->cosine[party], weight = point_weight(&pair->manifold);
+    if (cosine < FACE_COSINE)
+        return;
+    for (int k = 0; k < pair->manifold.count; k++) {
+        double depth_m = pair->manifold.point[k].depth_m - pair->give_m;
+        if (depth_m <= 0.0)
             continue;
-        for (int k = 0; k < pair->manifold.count; k++) {
-            double depth_m = pair->manifold.point[k].depth_m - pair->give_m;
-            if (depth_m <= 0.0)
-                continue;
-            load_n += weight * pair->stiffness_n_m * depth_m * cosine;
-            *slope_n_m += weight * pair->stiffness_n_m * cosine * cosine;
-            *facing = *facing || pair->cosine[1 - party] >= FACE_COSINE;
-        }
+        loads->load_n[own] += weight * pair->stiffness_n_m * depth_m * cosine;
+        loads->slope_n_m[own] += weight * pair->stiffness_n_m * cosine * cosine;
+        loads->facing[own] = loads->facing[own] || pair->cosine[1 - party] >= FACE_COSINE;
     }
-    return load_n;
 }
 
 // One round: every block takes the slip that balances its load as it is; where two blocks face
 // each other each takes half. Returns whether any did.
 static bool yield_round(cp_encounter *encounter, double time_step_s, bool *facing)
 {
+    block_loads loads[2] = {0};
+    for (int k = 0; k < encounter->touching_count; k++) {
+        const cp_touch *touch = &encounter->touching[k];
+        const cp_encounter_pair *pair = &encounter->pair[touch->outline[0]][touch->outline[1]];
+        for (int party = 0; party < 2; party++)
+            add_load(pair, party, touch->outline[party], &loads[party]);
+    }
     bool gave = false;
-    double slip_m[2][CP_OUTLINE_COUNT];
     *facing = false;
     for (int party = 0; party < 2; party++) {
         for (int k = 0; k < outline_count(encounter, party); k++) {
-            const cp_crush_block *block = block_of(encounter, party, k);
+            cp_crush_block *block = block_of(encounter, party, k);
             if (block == NULL)
                 continue;
-            double slope_n_m;
-            bool faces;
-            double load_n = load_on_block(encounter, party, k, &slope_n_m, &faces);
-            double excess_n = load_n - cp_crush_block_resistance(block, block->slip_m, time_step_s);
-            slope_n_m += cp_crush_block_slope(block, block->slip_m, time_step_s);
+            double excess_n = loads[party].load_n[k] -
+                              cp_crush_block_resistance(block, block->slip_m, time_step_s);
+            double slope_n_m =
+                loads[party].slope_n_m[k] + cp_crush_block_slope(block, block->slip_m, time_step_s);
             double more_m = slope_n_m > 0.0 ? excess_n / slope_n_m : 0.0;
-            slip_m[party][k] = fmax(0.0, block->slip_m + (faces ? 0.5 : 1.0) * more_m);
-            gave = gave || slip_m[party][k] > 0.0;
+            bool faces = loads[party].facing[k];
+            block->slip_m = fmax(0.0, block->slip_m + (faces ? 0.5 : 1.0) * more_m);
+            gave = gave || block->slip_m > 0.0;
             *facing = *facing || faces;
         }
     }
-    for (int party = 0; party < 2; party++)
-        for (int k = 0; k < outline_count(encounter, party); k++)
-            if (block_of(encounter, party, k) != NULL)
-                block_of(encounter, party, k)->slip_m = slip_m[party][k];
     return gave;
 }
 
 // What the blocks of every touching pair give along its normal.
 static void share_slip(cp_encounter *encounter)
 {
-    for (int i = 0; i < outline_count(encounter, 0); i++) {
-        for (int j = 0; j < outline_count(encounter, 1); j++) {
-            cp_encounter_pair *pair = &encounter->pair[i][j];
-            const cp_crush_block *block[2] = {block_of(encounter, 0, i), block_of(encounter, 1, j)};
-            pair->give_m = 0.0;
-            for (int party = 0; party < 2; party++)
-                if (block[party] != NULL && pair->cosine[party] >= FACE_COSINE)
-                    pair->give_m += block[party]->slip_m * pair->cosine[party];
+    for (int k = 0; k < encounter->touching_count; k++) {
+        const int *index = encounter->touching[k].outline;
+        cp_encounter_pair *pair = &encounter->pair[index[0]][index[1]];
+        pair->give_m = 0.0;
+        for (int party = 0; party < 2; party++) {
+            const cp_crush_block *block = block_of(encounter, party, index[party]);
+            if (block != NULL && pair->cosine[party] >= FACE_COSINE)
+                pair->give_m += block->slip_m * pair->cosine[party];
         }
     }
 }
@@ -265,38 +262,80 @@ static void drag(cp_encounter *encounter, cp_encounter_pair *pair, double pressu
     push(pair, cp_vec2_scale(tangent, pair->drag_n), at);
 }
 
+// The outlines of a party where they are now, and the circles around them.
+typedef struct party_now {
+    cp_outline outline[CP_OUTLINES_MAX];
+    double reach_m[CP_OUTLINES_MAX];
+} party_now;
+
+static void place_party(const cp_encounter *encounter, int party, party_now *now)
+{
+    for (int k = 0; k < outline_count(encounter, party); k++) {
+        now->outline[k] = outline_now(encounter, party, k);
+        double half_length_m = now->outline[k].half_length_m;
+        double half_width_m = now->outline[k].half_width_m;
+        now->reach_m[k] = sqrt(half_length_m * half_length_m + half_width_m * half_width_m);
+    }
+}
+
+// Whether the pair touches; how, and which way its blocks give.
+static bool touch_pair(cp_encounter *encounter, const party_now now[2], int i, int j)
+{
+    double reach_m = now[0].reach_m[i] + now[1].reach_m[j];
+    cp_vec2 apart = cp_vec2_sub(now[0].outline[i].centre_m, now[1].outline[j].centre_m);
+    if (cp_vec2_dot(apart, apart) > reach_m * reach_m)
+        return false;
+    cp_manifold manifold = cp_outline_contact(&now[0].outline[i], &now[1].outline[j], 0.0);
+    if (manifold.count == 0)
+        return false;
+    cp_encounter_pair *pair = &encounter->pair[i][j];
+    pair->manifold = manifold;
+    pair->give_m = 0.0;
+    pair->cosine[0] = block_of(encounter, 0, i) == NULL
+                          ? 0.0
+                          : cp_vec2_dot(manifold.normal, now[0].outline[i].along);
+    pair->cosine[1] = block_of(encounter, 1, j) == NULL
+                          ? 0.0
+                          : -cp_vec2_dot(manifold.normal, now[1].outline[j].along);
+    return true;
+}
+
+// All touching pairs of the coming step; the friction spring of one that touches no longer lets go.
+static void find_touching(cp_encounter *encounter)
+{
+    party_now now[2];
+    for (int party = 0; party < 2; party++)
+        place_party(encounter, party, &now[party]);
+    for (int k = 0; k < encounter->touching_count; k++) {
+        const int *index = encounter->touching[k].outline;
+        encounter->pair[index[0]][index[1]].manifold.count = 0;
+    }
+    cp_touch before[CP_OUTLINES_MAX * CP_OUTLINES_MAX];
+    int before_count = encounter->touching_count;
+    memcpy(before, encounter->touching, (size_t)before_count * sizeof *before);
+    encounter->touching_count = 0;
+    for (int i = 0; i < outline_count(encounter, 0); i++)
+        for (int j = 0; j < outline_count(encounter, 1); j++)
+            if (touch_pair(encounter, now, i, j))
+                encounter->touching[encounter->touching_count++] = (cp_touch){{i, j}};
+    for (int k = 0; k < before_count; k++) {
+        cp_encounter_pair *pair = &encounter->pair[before[k].outline[0]][before[k].outline[1]];
+        if (pair->manifold.count == 0)
+            pair->stuck_m = 0.0;
+    }
+}
+
 void cp_encounter_apply_forces(cp_encounter *encounter, double time_step_s)
 {
     encounter->elastic_normal_j = 0.0;
     encounter->elastic_friction_j = 0.0;
-    cp_outline outline[2][CP_OUTLINE_COUNT];
-    for (int party = 0; party < 2; party++)
-        for (int k = 0; k < outline_count(encounter, party); k++)
-            outline[party][k] = outline_now(encounter, party, k);
-    for (int i = 0; i < outline_count(encounter, 0); i++) {
-        for (int j = 0; j < outline_count(encounter, 1); j++) {
-            cp_encounter_pair *pair = &encounter->pair[i][j];
-            pair->manifold = cp_outline_contact(&outline[0][i], &outline[1][j], 0.0);
-            pair->give_m = 0.0;
-            pair->cosine[0] = block_of(encounter, 0, i) == NULL
-                                  ? 0.0
-                                  : cp_vec2_dot(pair->manifold.normal, outline[0][i].along);
-            pair->cosine[1] = block_of(encounter, 1, j) == NULL
-                                  ? 0.0
-                                  : -cp_vec2_dot(pair->manifold.normal, outline[1][j].along);
-        }
-    }
+    find_touching(encounter);
     yield_blocks(encounter, time_step_s);
-    for (int i = 0; i < outline_count(encounter, 0); i++) {
-        for (int j = 0; j < outline_count(encounter, 1); j++) {
-            cp_encounter_pair *pair = &encounter->pair[i][j];
-            if (pair->manifold.count == 0) {
-                pair->stuck_m = 0.0;
-                continue;
-            }
-            double pressure_n = press(encounter, pair, time_step_s);
-            drag(encounter, pair, pressure_n, time_step_s);
-        }
+    for (int k = 0; k < encounter->touching_count; k++) {
+        const int *index = encounter->touching[k].outline;
+        cp_encounter_pair *pair = &encounter->pair[index[0]][index[1]];
+        double pressure_n = press(encounter, pair, time_step_s);
+        drag(encounter, pair, pressure_n, time_step_s);
     }
 }
 
@@ -322,10 +361,10 @@ static bool settle_pair(cp_encounter *encounter, cp_encounter_pair *pair, double
 bool cp_encounter_end_step(cp_encounter *encounter, double time_step_s)
 {
     bool pressed = false;
-    for (int i = 0; i < outline_count(encounter, 0); i++)
-        for (int j = 0; j < outline_count(encounter, 1); j++)
-            if (encounter->pair[i][j].manifold.count > 0 &&
-                settle_pair(encounter, &encounter->pair[i][j], time_step_s))
-                pressed = true;
+    for (int k = 0; k < encounter->touching_count; k++) {
+        const int *index = encounter->touching[k].outline;
+        if (settle_pair(encounter, &encounter->pair[index[0]][index[1]], time_step_s))
+            pressed = true;
+    }
     return pressed;
 }

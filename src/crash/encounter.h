@@ -34,11 +34,18 @@ typedef struct cp_encounter_pair {
     double stuck_m;        /* displacement of the friction spring; memory between steps */
 } cp_encounter_pair;
 
+/* Numbers of the two outlines of a pair that touches in the present step. */
+typedef struct cp_touch {
+    int outline[2];
+} cp_touch;
+
 typedef struct cp_encounter {
     cp_car *car[2]; /* [1] NULL against the barrier */
     cp_outline barrier;
     double friction_1;
-    cp_encounter_pair pair[CP_OUTLINE_COUNT][CP_OUTLINE_COUNT]; /* [outline of a][of b] */
+    cp_encounter_pair pair[CP_OUTLINES_MAX][CP_OUTLINES_MAX]; /* [outline of a][of b] */
+    cp_touch touching[CP_OUTLINES_MAX * CP_OUTLINES_MAX];     /* in the order of the pairs */
+    int touching_count;
     double friction_work_j;  /* put into friction so far, stored and dissipated */
     double normal_work_j;    /* put into contact springs and dampers so far */
     double elastic_normal_j; /* stored in contact springs now */

@@ -3,16 +3,6 @@
 
 #include <stdlib.h>
 
-// What the outlines of a car are, in their order; members without outline are drawn as bars.
-static const cp_film_part PART_OF_OUTLINE[CP_OUTLINE_COUNT] = {CP_FILM_CROSS_MEMBER_LEFT,
-                                                               CP_FILM_CROSS_MEMBER_RIGHT,
-                                                               CP_FILM_CORNER_LEFT,
-                                                               CP_FILM_CORNER_RIGHT,
-                                                               CP_FILM_ENGINE,
-                                                               CP_FILM_BODY,
-                                                               CP_FILM_UPPER_LEFT,
-                                                               CP_FILM_UPPER_RIGHT};
-
 static cp_film_shape shape_of_outline(const cp_outline *outline)
 {
     return (cp_film_shape){.centre_m = outline->centre_m,
@@ -87,12 +77,39 @@ static void take_members(const cp_car *car, int side, cp_film_shape part[CP_FILM
     part[CP_FILM_CRASH_BOX_LEFT + side] = bar(joint_m, front_m, yaw_rad, 0.14);
 }
 
+static cp_film_shape shape_of(const cp_car *car, int outline)
+{
+    cp_outline now = cp_car_outline_now(car, outline);
+    return shape_of_outline(&now);
+}
+
+// A corner, or half of the upper load path: as wide as its strips together, as long as they are on
+// average.
+static void take_blocks(const cp_car *car, cp_film_shape part[CP_FILM_PART_COUNT])
+{
+    static const cp_film_part PART[4] = {CP_FILM_CORNER_LEFT, CP_FILM_CORNER_RIGHT,
+                                         CP_FILM_UPPER_LEFT, CP_FILM_UPPER_RIGHT};
+    int strips[4] = {0};
+    for (int k = 0; k < car->block_count; k++) {
+        int place = cp_car_part_of_block(car, k);
+        cp_film_shape strip = shape_of(car, CP_OUTLINE_BLOCKS + k), *whole = &part[PART[place]];
+        double share = 1.0 / ++strips[place];
+        whole->centre_m = cp_vec2_add(cp_vec2_scale(whole->centre_m, 1.0 - share),
+                                      cp_vec2_scale(strip.centre_m, share));
+        whole->length_m = (1.0 - share) * whole->length_m + share * strip.length_m;
+        whole->width_m += strip.width_m;
+        whole->yaw_rad = strip.yaw_rad;
+        whole->radius_m = strip.radius_m;
+    }
+}
+
 static void take_parts(const cp_car *car, cp_film_car *seen)
 {
-    for (int k = 0; k < CP_OUTLINE_COUNT; k++) {
-        cp_outline outline = cp_car_outline_now(car, k);
-        seen->part[PART_OF_OUTLINE[k]] = shape_of_outline(&outline);
-    }
+    for (int side = 0; side < 2; side++)
+        seen->part[CP_FILM_CROSS_MEMBER_LEFT + side] = shape_of(car, side);
+    seen->part[CP_FILM_ENGINE] = shape_of(car, CP_OUTLINE_ENGINE);
+    seen->part[CP_FILM_BODY] = shape_of(car, CP_OUTLINE_BODY);
+    take_blocks(car, seen->part);
     for (int side = 0; side < 2; side++)
         take_members(car, side, seen->part);
 

@@ -50,9 +50,7 @@ typedef struct layout {
     double firewall_m;     /* their feet */
     double engine_m;       /* middle of the engine */
     double engine_length_m;
-    double corner_m; /* middle of the outboard corners */
     double corner_length_m;
-    double upper_m;
     double upper_length_m;
     double upper_width_m;
 } layout;
@@ -71,10 +69,8 @@ static layout layout_of(const cp_vehicle_model *m)
     at.engine_m = 0.5 * (engine_back_m + engine_front_m);
     at.engine_length_m = engine_front_m - engine_back_m;
     double corner_front_m = at.front_m - m->corner_gap_m;
-    at.corner_m = 0.5 * (corner_front_m + at.firewall_m);
     at.corner_length_m = corner_front_m - at.firewall_m;
     double upper_front_m = at.front_m - m->upper_gap_m;
-    at.upper_m = 0.5 * (upper_front_m + at.firewall_m);
     at.upper_length_m = upper_front_m - at.firewall_m;
     at.upper_width_m = 0.5 * m->width_m - m->corner_width_m;
     return at;
@@ -297,21 +293,77 @@ static void set_force_elements(cp_car *car, const layout *at, const cp_vec2 plac
     }
 }
 
-// Corners and upper load path.
-static void set_blocks(cp_car *car)
+// A part that collapses in strips side by side, each a share of it: what meets half of its width
+// meets half of its force.
+typedef struct stripped_part {
+    int strips;
+    cp_crush_law law; /* of the whole */
+    double front_m;   /* x in the root's frame */
+    double rear_m;
+    double inner_m; /* from the centre line */
+    double outer_m;
+} stripped_part;
+
+static void set_strips(cp_car *car, const stripped_part *part, double sign)
 {
     const cp_vehicle_model *m = car->model;
-    for (int side = 0; side < 2; side++) {
-        car->block[side].law = crush_law(m, m->corner_collapse_begin_m, m->corner_collapse_begin_kn,
-                                         m->corner_collapse_end_m, m->corner_collapse_end_kn);
-        car->block[2 + side].law =
-            crush_law(m, m->upper_collapse_begin_m, m->upper_collapse_begin_kn,
-                      m->upper_collapse_end_m, m->upper_collapse_end_kn);
+    double share = 1.0 / part->strips, width_m = share * (part->outer_m - part->inner_m);
+    cp_crush_law law = part->law;
+    law.begin_n *= share;
+    law.end_n *= share;
+    law.unload_n_m *= share;
+    law.stop_n_m *= share;
+    for (int k = 0; k < part->strips; k++) {
+        int block = car->block_count++;
+        car->block[block] =
+            (cp_crush_block){.law = law,
+                             .damping_n_s_m = share * 1e3 * m->member_damping_kn_s_m,
+                             .rate_s_m = m->crush_rate_s_m};
+        car->outline[CP_OUTLINE_BLOCKS + block] =
+            (cp_car_outline){.body = CP_BODY_ROOT,
+                             .block = block,
+                             .centre_m = {0.5 * (part->front_m + part->rear_m),
+                                          sign * (part->inner_m + (k + 0.5) * width_m)},
+                             .half_length_m = 0.5 * (part->front_m - part->rear_m),
+                             .half_width_m = 0.5 * width_m,
+                             .stiffness_n_m = share * 1e3 * m->contact_stiffness_kn_m};
     }
-    for (int k = 0; k < CP_BLOCK_COUNT; k++) {
-        car->block[k].damping_n_s_m = 1e3 * m->member_damping_kn_s_m;
-        car->block[k].rate_s_m = m->crush_rate_s_m;
-    }
+}
+
+// Corners and upper load path.
+static void set_blocks(cp_car *car, const layout *at, double root_m)
+{
+    const cp_vehicle_model *m = car->model;
+    double rear_m = at->firewall_m - root_m;
+    stripped_part corner = {.strips = (int)m->corner_strips_1,
+                            .law = crush_law(m, m->corner_collapse_begin_m,
+                                             m->corner_collapse_begin_kn, m->corner_collapse_end_m,
+                                             m->corner_collapse_end_kn),
+                            .front_m = rear_m + at->corner_length_m,
+                            .rear_m = rear_m,
+                            .inner_m = at->upper_width_m,
+                            .outer_m = 0.5 * m->width_m};
+    stripped_part upper = {.strips = (int)m->upper_strips_1,
+                           .law =
+                               crush_law(m, m->upper_collapse_begin_m, m->upper_collapse_begin_kn,
+                                         m->upper_collapse_end_m, m->upper_collapse_end_kn),
+                           .front_m = rear_m + at->upper_length_m,
+                           .rear_m = rear_m,
+                           .inner_m = 0.0,
+                           .outer_m = at->upper_width_m};
+    set_strips(car, &corner, 1.0);
+    set_strips(car, &corner, -1.0);
+    set_strips(car, &upper, 1.0);
+    set_strips(car, &upper, -1.0);
+    car->outline_count = CP_OUTLINE_BLOCKS + car->block_count;
+}
+
+int cp_car_part_of_block(const cp_car *car, int block)
+{
+    int corner_strips = (int)car->model->corner_strips_1;
+    if (block < 2 * corner_strips)
+        return block / corner_strips;
+    return 2 + (block - 2 * corner_strips) / (int)car->model->upper_strips_1;
 }
 
 static void set_outlines(cp_car *car, const layout *at, const cp_vec2 place[CP_BODY_COUNT])
@@ -322,7 +374,7 @@ static void set_outlines(cp_car *car, const layout *at, const cp_vec2 place[CP_B
     double front_n_m = 1e3 * m->contact_stiffness_kn_m, body_n_m = 1e3 * m->body_stiffness_kn_m;
     double front_n_s_m = 2.0 * m->contact_damping_1 * sqrt(front_n_m * contact_mass_kg);
     double body_n_s_m = 2.0 * m->body_damping_1 * sqrt(body_n_m * 0.5 * m->mass_kg);
-    double r = m->corner_radius_m, root_m = place[CP_BODY_ROOT].x;
+    double r = m->corner_radius_m;
     for (int side = 0; side < 2; side++) {
         // A half swept back keeps its inner end in front.
         double sign = side == 0 ? 1.0 : -1.0, sweep_rad = sign * m->cross_member_sweep_rad;
@@ -333,37 +385,26 @@ static void set_outlines(cp_car *car, const layout *at, const cp_vec2 place[CP_B
                                               .along = cp_vec2_heading(sweep_rad),
                                               .half_length_m = 0.5 * m->cross_member_depth_m,
                                               .half_width_m = 0.5 * m->cross_member_half_width_m};
-        cp_vec2 corner_m = {at->corner_m - root_m, sign * 0.5 * (m->width_m - m->corner_width_m)};
-        car->outline[2 + side] = (cp_car_outline){.body = CP_BODY_ROOT,
-                                                  .block = side,
-                                                  .centre_m = corner_m,
-                                                  .half_length_m = 0.5 * at->corner_length_m,
-                                                  .half_width_m = 0.5 * m->corner_width_m};
-        car->outline[6 + side] =
-            (cp_car_outline){.body = CP_BODY_ROOT,
-                             .block = 2 + side,
-                             .centre_m = {at->upper_m - root_m, sign * 0.5 * at->upper_width_m},
-                             .half_length_m = 0.5 * at->upper_length_m,
-                             .half_width_m = 0.5 * at->upper_width_m};
     }
-    car->outline[4] = (cp_car_outline){.body = CP_BODY_ENGINE,
-                                       .block = -1,
-                                       .half_length_m = 0.5 * at->engine_length_m,
-                                       .half_width_m = 0.5 * m->engine_width_m};
+    car->outline[CP_OUTLINE_ENGINE] = (cp_car_outline){.body = CP_BODY_ENGINE,
+                                                       .block = -1,
+                                                       .half_length_m = 0.5 * at->engine_length_m,
+                                                       .half_width_m = 0.5 * m->engine_width_m};
     double rear_m = m->cg_to_front_m - m->length_m;
-    car->outline[5] =
+    car->outline[CP_OUTLINE_BODY] =
         (cp_car_outline){.body = CP_BODY_ROOT,
                          .block = -1,
                          .centre_m = {0.5 * (rear_m + at->firewall_m) - place[CP_BODY_ROOT].x, 0.0},
                          .half_length_m = 0.5 * (at->firewall_m - rear_m),
                          .half_width_m = 0.5 * m->width_m};
-    for (int k = 0; k < CP_OUTLINE_COUNT; k++) {
+    for (int k = 0; k < car->outline_count; k++) {
         cp_car_outline *outline = &car->outline[k];
         if (k >= 2)
             outline->along = (cp_vec2){1.0, 0.0};
         bool body = outline->body == CP_BODY_ROOT && outline->block < 0;
         outline->radius_m = fmin(r, fmin(outline->half_length_m, outline->half_width_m));
-        outline->stiffness_n_m = body ? body_n_m : front_n_m;
+        if (outline->block < 0)
+            outline->stiffness_n_m = body ? body_n_m : front_n_m;
         outline->damping_n_s_m = outline->block >= 0 ? 0.0 : body ? body_n_s_m : front_n_s_m;
     }
 }
@@ -380,7 +421,7 @@ cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model, dWorldID worl
     place_bodies(car, world, state, place);
     join_bodies(car, world, &at, place);
     set_force_elements(car, &at, place);
-    set_blocks(car);
+    set_blocks(car, &at, place[CP_BODY_ROOT].x);
     set_outlines(car, &at, place);
     return CP_OK;
 }
@@ -618,7 +659,7 @@ double cp_car_plastic_energy(const cp_car *car)
 void cp_car_block_energy(const cp_car *car, double *plastic_j, double *damping_j)
 {
     *plastic_j = *damping_j = 0.0;
-    for (int k = 0; k < CP_BLOCK_COUNT; k++) {
+    for (int k = 0; k < car->block_count; k++) {
         *plastic_j += car->block[k].plastic_j;
         *damping_j += car->block[k].damping_j;
     }

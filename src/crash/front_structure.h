@@ -67,8 +67,12 @@ enum {
     CP_AXIAL_COUNT = 6, /* 2 longitudinals, 2 crash boxes, 2 engine-to-firewall */
     CP_BENDING_COUNT = 4,
     CP_TIE_COUNT = 2,
-    CP_OUTLINE_COUNT = 8, /* 2 cross member halves, 2 corners, engine, root, 2 upper */
-    CP_BLOCK_COUNT = 4,
+    CP_STRIPS_MAX = 4, /* of a corner, of half of the upper load path */
+    CP_BLOCKS_MAX = 4 * CP_STRIPS_MAX,
+    CP_OUTLINE_ENGINE = 2, /* after the halves of the cross member */
+    CP_OUTLINE_BODY,
+    CP_OUTLINE_BLOCKS, /* and one for every block */
+    CP_OUTLINES_MAX = CP_OUTLINE_BLOCKS + CP_BLOCKS_MAX,
     CP_HINGE_COUNT = 2
 };
 
@@ -94,8 +98,11 @@ typedef struct cp_car {
     cp_axial_element axial[CP_AXIAL_COUNT];
     cp_bending_element bending[CP_BENDING_COUNT];
     cp_tie_element tie[CP_TIE_COUNT];
-    cp_crush_block block[CP_BLOCK_COUNT]; /* corners left, right; upper load path left, right */
-    cp_car_outline outline[CP_OUTLINE_COUNT];
+    cp_crush_block block[CP_BLOCKS_MAX]; /* strips of the corners left, right, of the upper load
+                                          * path left, right; from the middle outwards */
+    int block_count;
+    cp_car_outline outline[CP_OUTLINES_MAX];
+    int outline_count;
     dJointID hinge[CP_HINGE_COUNT];
     dJointFeedback hinge_feedback[CP_HINGE_COUNT];
     cp_vec2 hinge_gap_m[CP_HINGE_COUNT]; /* between its two anchors at the step's beginning */
@@ -103,7 +110,8 @@ typedef struct cp_car {
     double crush_m;                      /* largest shortening bumper to firewall so far */
 } cp_car;
 
-/* Build the car in the world at a state. The world owns bodies and joints. Errors: CP_BAD_INPUT
+/* Build the car in the world at a state. The world owns bodies and joints, and knows where the car
+ * is: it must stay there until the world has gone. Errors: CP_BAD_INPUT
  * when masses and inertia do not fit together (naming the field). */
 CP_MUST_CHECK cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model, dWorldID world,
                                      const cp_body_state *state, cp_error *error);
@@ -113,6 +121,10 @@ void cp_car_apply_forces(cp_car *car);
 /* After the step: what the dampers took, how far it is crushed; angular momentum mended where a
  * hinge's two anchors have drifted apart. */
 void cp_car_after_step(cp_car *car, double time_step_s);
+
+/* Part a block belongs to: 0, 1 the left and right corner, 2, 3 the halves of the upper load path.
+ */
+int cp_car_part_of_block(const cp_car *car, int block);
 
 /* Outline number index where it is now. */
 cp_outline cp_car_outline_now(const cp_car *car, int index);

@@ -348,6 +348,13 @@ cp_status cp_vehicle_model_validate(const cp_vehicle_model *m, cp_error *error)
     if (status != CP_OK)
         return status;
 
+    if (m->corner_strips_1 != floor(m->corner_strips_1))
+        return cp_fail(error, CP_BAD_INPUT, "corner_strips_1 must be a whole number, found %g",
+                       m->corner_strips_1);
+    if (m->upper_strips_1 != floor(m->upper_strips_1))
+        return cp_fail(error, CP_BAD_INPUT, "upper_strips_1 must be a whole number, found %g",
+                       m->upper_strips_1);
+
     // Lengths: what collapses fits its member, the engine bay holds an engine.
     double front_length_m =
         m->cross_member_depth_m + m->crash_box_length_m + m->longitudinal_length_m;

@@ -57,12 +57,16 @@
     X(corner_gap_m, "m", 0.3, 0.0, 0.8,                                                            \
       "bumper front to front of the outboard corner (fender, wheel)")                              \
     X(corner_width_m, "m", 0.3, 0.1, 0.6, "outboard corner, across the car from its side inwards") \
+    X(corner_strips_1, "1", 1, 1, 4,                                                               \
+      "strips side by side that the corner collapses in, a whole number")                          \
     X(corner_collapse_begin_m, "m", 0.05, 0.005, 0.3, "compression where collapse begins")         \
     X(corner_collapse_begin_kn, "kN", 40, 1, 400, "force where collapse begins")                   \
     X(corner_collapse_end_m, "m", 0.5, 0.1, 0.9, "compression where nothing is left")              \
     X(corner_collapse_end_kn, "kN", 90, 1, 800, "force where nothing is left")                     \
     X(upper_gap_m, "m", 0.15, 0.0, 0.8,                                                            \
       "bumper front to front of the upper load path (radiator support, hood, upper rails)")        \
+    X(upper_strips_1, "1", 1, 1, 4,                                                                \
+      "strips that half of the upper load path collapses in, likewise")                            \
     X(upper_collapse_begin_m, "m", 0.05, 0.005, 0.3, "compression where collapse begins")          \
     X(upper_collapse_begin_kn, "kN", 10, 0.5, 400, "force where collapse begins")                  \
     X(upper_collapse_end_m, "m", 0.5, 0.1, 0.9, "compression where nothing is left")               \

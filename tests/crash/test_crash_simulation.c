@@ -31,6 +31,8 @@ static random_crash draw_crash(uint64_t index)
                           .opponent = cp_vehicle_model_default(),
                           .barrier = index % 2 == 0};
     crash.opponent.mass_kg = crash_builder_draw("mass", index, 1300.0, 2000.0);
+    crash.own.corner_strips_1 = floor(crash_builder_draw("corner strips", index, 1.0, 5.0));
+    crash.own.upper_strips_1 = floor(crash_builder_draw("upper strips", index, 1.0, 5.0));
     crash.configuration =
         crash_builder_configuration(&crash.own, crash.barrier ? NULL : &crash.opponent,
                                     crash_builder_draw("speed", index, 25.0, 56.0),
@@ -84,6 +86,7 @@ static void a_mirrored_crash_gives_mirrored_pulses(void **state)
     (void)state;
     cp_vehicle_model car = cp_vehicle_model_default();
     for (uint64_t k = 0; k < 12; k++) {
+        car.corner_strips_1 = 1.0 + (double)(k % 4);
         double speed = crash_builder_draw("mirror speed", k, 25.0, 56.0);
         double offset = crash_builder_draw("mirror offset", k, -900.0, 900.0);
         double angle = crash_builder_draw("mirror angle", k, -20.0, 20.0);

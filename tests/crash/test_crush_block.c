@@ -66,11 +66,11 @@ static void settling_counts_every_joule_once(void **state)
     assert_near(block.damping_j, damped_j, 1e-9);
 }
 
-// A car whose whole front is one pair of blocks against the wall: m v^2 / 2 = F s.
-static void a_car_is_stopped_by_its_blocks_alone(void **state)
+// A car whose front is its upper load path alone, two halves of 150 kN, beside boxes of 5 kN each.
+static cp_vehicle_model car_of_upper_load_path(double strips_1)
 {
-    (void)state;
     cp_vehicle_model car = cp_vehicle_model_default();
+    car.upper_strips_1 = strips_1;
     car.upper_gap_m = 0.0;
     car.corner_gap_m = 0.4;
     car.cross_member_depth_m = 0.12;
@@ -86,19 +86,49 @@ static void a_car_is_stopped_by_its_blocks_alone(void **state)
     cp_error error = {0};
     if (cp_vehicle_model_validate(&car, &error) != CP_OK)
         fail_msg("%s", error.text);
-    double v = 5.0;
-    cp_crash_configuration crash = crash_builder_configuration(&car, NULL, 3.6 * v, 0.0, 0, 0);
+    return car;
+}
+
+static double deepest_m(const cp_vehicle_model *car, double speed_m_s)
+{
+    cp_crash_configuration crash =
+        crash_builder_configuration(car, NULL, 3.6 * speed_m_s, 0.0, 0, 0);
     cp_crash_options options = cp_crash_options_default();
-    cp_crash_result result = crash_builder_simulate(&car, NULL, &crash, &options);
+    cp_crash_result result = crash_builder_simulate(car, NULL, &crash, &options);
     double deepest_m = 0.0;
     for (size_t k = 0; k < result.pulse[0].sample_count; k++)
         deepest_m = fmax(deepest_m, result.pulse[0].channel[CP_CHANNEL_X][k]);
-
-    // The weak boxes add 10 kN; the cross member's own momentum goes into the wall directly.
-    double expected_m = 0.5 * car.mass_kg * v * v / 310e3;
-    assert_true(expected_m < 0.15);
-    assert_true(deepest_m > 0.9 * expected_m && deepest_m < 1.02 * expected_m);
     cp_crash_result_destroy(&result);
+    return deepest_m;
+}
+
+// m v^2 / 2 = F s; the weak boxes add 10 kN, the cross member's own momentum goes into the wall
+// directly. In however many strips.
+static void a_car_is_stopped_by_its_blocks_alone(void **state)
+{
+    (void)state;
+    double v = 5.0;
+    for (int strips = 1; strips <= 4; strips++) {
+        cp_vehicle_model car = car_of_upper_load_path(strips);
+        double expected_m = 0.5 * car.mass_kg * v * v / 310e3, found_m = deepest_m(&car, v);
+        assert_true(expected_m < 0.15);
+        assert_true(found_m > 0.9 * expected_m && found_m < 1.02 * expected_m);
+    }
+}
+
+// A wall as wide as the inner one of two strips of each half meets half of the force.
+static void half_of_the_width_is_half_of_the_force(void **state)
+{
+    (void)state;
+    double v = 4.0;
+    for (int strips = 1; strips <= 4; strips += 3) {
+        cp_vehicle_model car = car_of_upper_load_path(strips);
+        car.barrier.width_m = 0.5 * car.width_m - car.corner_width_m - 0.02;
+        car.barrier.corner_radius_m = 0.01;
+        double force_n = strips == 1 ? 310e3 : 160e3;
+        double expected_m = 0.5 * car.mass_kg * v * v / force_n, found_m = deepest_m(&car, v);
+        assert_true(found_m > 0.88 * expected_m && found_m < 1.02 * expected_m);
+    }
 }
 
 int main(void)
@@ -108,6 +138,7 @@ int main(void)
         cmocka_unit_test(its_slope_is_that_of_its_resistance),
         cmocka_unit_test(settling_counts_every_joule_once),
         cmocka_unit_test(a_car_is_stopped_by_its_blocks_alone),
+        cmocka_unit_test(half_of_the_width_is_half_of_the_force),
     };
     return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

@@ -85,6 +85,8 @@ static void every_error_names_line_and_field(void **state)
     expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: 20}\n",
                    ":3:", "between 500 and 5000, found 20");
     expect_refusal("vehicle: x\nparameters:\n  - {name: mess_kg, value: 20}\n", ":3:", "mess_kg");
+    expect_refusal("vehicle: x\nparameters:\n  - {name: corner_strips_1, value: 2.5}\n", ":",
+                   "corner_strips_1 must be a whole number, found 2.5");
     expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: 1500}\n"
                    "  - {name: mass_kg, value: 1600}\n",
                    ":4:", "given twice");

@@ -50,6 +50,9 @@ static void load_fleet(const char *folder, fleet *all)
     cp_error error = {0};
     glob_t files;
     all->model[all->count++] = cp_vehicle_model_default();
+    all->model[all->count] = cp_vehicle_model_default();
+    all->model[all->count].corner_strips_1 = 4.0;
+    all->model[all->count++].upper_strips_1 = 3.0;
     snprintf(pattern, sizeof pattern, "%s/*.yaml", folder);
     if (glob(pattern, 0, NULL, &files) != 0) {
         fprintf(stderr, "no vehicle files in %s\n", folder);

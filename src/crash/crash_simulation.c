@@ -75,6 +75,8 @@ typedef struct crash_run {
     cp_body_state last[2];      /* centre of gravity at the end of the last step */
     cp_vec2 first_relative_m_s; /* of a against b at first contact */
     double last_approach_m_s;
+    double before_elastic_j; /* when energy was taken last */
+    double before_kinetic_j;
     size_t sample;
     cp_film_camera camera;
     cp_crash_result *result;
@@ -356,8 +358,13 @@ static void update_energy(crash_run *run)
     energy->friction_j = run->encounter.friction_work_j - run->encounter.elastic_friction_j;
     energy->contact_damping_j =
         run->encounter.normal_work_j - run->encounter.elastic_normal_j - blocks_j;
-    double mechanical_j = energy->kinetic_j + energy->elastic_j;
-    energy->highest_mechanical_j = fmax(energy->highest_mechanical_j, mechanical_j);
+
+    // Of the step before: its forces, hence what it had stored, lie in the middle of the two
+    // velocities around it.
+    double middle_j = run->before_elastic_j + 0.5 * (run->before_kinetic_j + energy->kinetic_j);
+    energy->highest_mechanical_j = fmax(energy->highest_mechanical_j, middle_j);
+    run->before_elastic_j = energy->elastic_j;
+    run->before_kinetic_j = energy->kinetic_j;
 }
 
 static cp_crash_momentum momentum_now(const crash_run *run)

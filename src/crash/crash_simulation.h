@@ -30,7 +30,8 @@ typedef struct cp_crash_energy {
     double friction_j;
     double contact_damping_j;
     double joint_damping_j;
-    double highest_mechanical_j; /* largest kinetic + elastic over the run */
+    double highest_mechanical_j; /* largest kinetic + elastic over the run; kinetic as the mean of
+                                  * before and after the step that the elastic forces make */
 } cp_crash_energy;
 
 /* Momentum of all bodies together, and angular momentum about the middle between the two centres

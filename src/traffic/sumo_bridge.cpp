@@ -55,6 +55,8 @@ class Names
 struct Driving {
     uint32_t vehicle;
     const std::string *id;
+    uint32_t type = SUMO_BRIDGE_NONE; // looked up when it is first seen: it stays the same
+    uint32_t lane = SUMO_BRIDGE_NONE; // as last seen
 };
 
 // Vehicles by number and id. Numbers and texts are for good: contacts name vehicles that have long
@@ -123,9 +125,8 @@ struct Bridge {
     std::vector<Size> size_of_type;
     std::vector<cp_vehicle_state> states;
     std::vector<uint32_t> departed, gone, present, present_before;
-    std::vector<Driving> under_way;         // departed and not arrived, by id
-    std::vector<std::string> leaving;       // ids of those who went in this step
-    std::vector<uint32_t> type_of, lane_of; // by vehicle number: as last seen
+    std::vector<Driving> under_way;   // departed and not arrived, by id
+    std::vector<std::string> leaving; // ids of those who went in this step
     bool reads_places = true;
     std::vector<uint8_t> seen_in_step; // by vehicle number: last bits of the number of the step
     uint64_t step = 0;
@@ -333,27 +334,13 @@ double yaw_of_sumo_angle(double angle_deg)
     return cp_rad_from_deg(yaw_deg <= -180.0 ? 180.0 : yaw_deg);
 }
 
-// What stays the same as long as a vehicle exists: looked up when it is first seen.
-uint32_t type_of_vehicle(const std::string &id, uint32_t vehicle)
+// last: number of the lane it was seen on last, mostly that of now too.
+void read_place(const std::string &id, uint32_t *last, cp_vehicle_state *state)
 {
-    if (vehicle >= bridge->type_of.size()) {
-        bridge->type_of.resize(2 * static_cast<size_t>(vehicle) + 64, SUMO_BRIDGE_NONE);
-        bridge->lane_of.resize(bridge->type_of.size(), SUMO_BRIDGE_NONE);
-    }
-    uint32_t &type = bridge->type_of[vehicle];
-    if (type == SUMO_BRIDGE_NONE)
-        type = number_type(libsumo::Vehicle::getTypeID(id));
-    return type;
-}
-
-void read_place(const std::string &id, cp_vehicle_state *state)
-{
-    // The lane is mostly that of the step before.
     const std::string lane = libsumo::Vehicle::getLaneID(id);
-    uint32_t &last = bridge->lane_of[state->vehicle];
-    if (last == SUMO_BRIDGE_NONE || *bridge->lanes.name(last) != lane)
-        last = bridge->lanes.number(lane);
-    state->lane = last;
+    if (*last == SUMO_BRIDGE_NONE || *bridge->lanes.name(*last) != lane)
+        *last = bridge->lanes.number(lane);
+    state->lane = *last;
     state->is_in_junction = !lane.empty() && lane[0] == ':';
     state->lane_position_m = libsumo::Vehicle::getLanePosition(id);
 }
@@ -361,10 +348,10 @@ void read_place(const std::string &id, cp_vehicle_state *state)
 enum class Where { ON_THE_ROAD, ELSEWHERE, GONE };
 
 // Read one vehicle, if it is on the road.
-Where read_vehicle(const Driving &driving, cp_vehicle_state *state)
+Where read_vehicle(Driving *driving, cp_vehicle_state *state)
 {
     using libsumo::Vehicle;
-    const std::string &id = *driving.id;
+    const std::string &id = *driving->id;
     libsumo::TraCIPosition position;
     try {
         position = Vehicle::getPosition(id, true);
@@ -374,10 +361,12 @@ Where read_vehicle(const Driving &driving, cp_vehicle_state *state)
     if (position.x <= -1e9 || position.y <= -1e9)
         return Where::ELSEWHERE;
     *state = cp_vehicle_state{};
-    state->vehicle = driving.vehicle;
-    state->type = type_of_vehicle(id, state->vehicle);
+    if (driving->type == SUMO_BRIDGE_NONE)
+        driving->type = number_type(Vehicle::getTypeID(id));
+    state->vehicle = driving->vehicle;
+    state->type = driving->type;
     if (bridge->reads_places)
-        read_place(id, state);
+        read_place(id, &driving->lane, state);
     state->front_x_m = position.x;
     state->front_y_m = position.y;
     state->elevation_m = position.z;
@@ -441,9 +430,9 @@ void step()
     bridge->states.clear();
     const uint8_t this_step = static_cast<uint8_t>(bridge->step);
     size_t kept = 0;
-    for (const Driving &driving : bridge->under_way) {
+    for (Driving &driving : bridge->under_way) {
         cp_vehicle_state state;
-        const Where where = read_vehicle(driving, &state);
+        const Where where = read_vehicle(&driving, &state);
         if (where == Where::GONE)
             bridge->leaving.push_back(*driving.id);
         else
@@ -453,7 +442,7 @@ void step()
         bridge->states.push_back(state);
         bridge->present.push_back(state.vehicle);
         if (state.vehicle >= bridge->seen_in_step.size())
-            bridge->seen_in_step.resize(2 * static_cast<size_t>(state.vehicle) + 64, 0);
+            bridge->seen_in_step.resize(static_cast<size_t>(state.vehicle) * 9 / 8 + 64, 0);
         bridge->seen_in_step[state.vehicle] = this_step;
     }
     bridge->under_way.resize(kept, {});
@@ -658,8 +647,10 @@ void sumo_bridge_read_places(bool wanted)
 
 cp_status sumo_bridge_place(cp_vehicle_state *state, cp_error *error)
 {
-    return command_vehicle("place", state->vehicle, error,
-                           [=](const std::string &id) { read_place(id, state); });
+    return command_vehicle("place", state->vehicle, error, [=](const std::string &id) {
+        uint32_t last = SUMO_BRIDGE_NONE;
+        read_place(id, &last, state);
+    });
 }
 
 double sumo_bridge_time_s(void)

@@ -275,6 +275,15 @@ static void write_report(FILE *file, const cp_fit *fit, const cp_calibration *ca
             fit->starts, fit->starts == 1 ? "" : "s", fit->algorithm, fit->seed, fit->population,
             fit->generations, fit->global_time_step_s, fit->slope_evaluations,
             fit->local_evaluations, fit->local_time_step_s);
+    if (fit->slope_evaluations > 0)
+        fprintf(file, "\nLeast squares count an error above %g g by its absolute value.\n",
+                fit->soft_g);
+    if (fit->prior_g > 0.0)
+        fprintf(
+            file,
+            "\nPrior: an unknown that moves through the whole of its bounds, away from its value "
+            "in the base, must take %g g off the summed errors.\n",
+            fit->prior_g);
     if (fit->objective == CP_FIT_PULSE)
         write_pulses(file, fit, calibration);
     write_summary(file, fit->objective == CP_FIT_PULSE ? "OLC" : "Fitted to all configurations",

@@ -11,6 +11,7 @@
 
 #include "calibrate/calibration.h"
 #include "calibrate/objective.h"
+#include "core/file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -197,6 +198,15 @@ static void what_is_known_holds_back(void **state)
         // The objective reported is the misfit alone.
         assert_near(calibration.objective, calibration.validation.mean_abs_error_g, 1e-9);
         assert_int_equal(cp_calibration_write(&fit, &calibration, &error), CP_OK);
+
+        // And the report says how it was held back, if at all.
+        char path[4200], *report = NULL;
+        size_t size = 0;
+        snprintf(path, sizeof path, "%s.fit.md", fit.output_path);
+        assert_int_equal(cp_file_read(path, &report, &size, &error), CP_OK);
+        assert_int_equal(strstr(report, "Prior: ") != NULL, strcmp(CASES[k].prior_g, "0") != 0);
+        assert_non_null(strstr(report, "an error above 0.3 g"));
+        free(report);
         cp_calibration_destroy(&calibration);
         cp_fit_destroy(&fit);
         close_workshop(&shop);

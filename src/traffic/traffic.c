@@ -2,6 +2,7 @@
 #include "traffic/traffic.h"
 
 #include "core/geometry.h"
+#include "core/recent_rows.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -23,9 +24,8 @@ struct cp_traffic {
     size_t count;
     cp_vehicle_motion *previous; /* of the step before */
     size_t previous_count;
-    size_t capacity;  /* of both */
-    uint32_t *row_of; /* by vehicle number: row in motions, or SUMO_BRIDGE_NONE */
-    size_t numbers;   /* length of row_of */
+    size_t capacity;       /* of both */
+    cp_recent_rows row_of; /* by vehicle number: row in motions */
     const uint32_t *departed;
     size_t departed_count;
     cp_lateral_overlays *overlays;
@@ -65,7 +65,7 @@ void cp_traffic_destroy(cp_traffic *traffic)
     cp_lateral_overlays_destroy(traffic->overlays);
     free(traffic->motions);
     free(traffic->previous);
-    free(traffic->row_of);
+    cp_recent_rows_destroy(&traffic->row_of);
     free(traffic->held);
     free(traffic);
 }
@@ -87,19 +87,24 @@ static cp_status reserve_motions(cp_traffic *traffic, size_t count, cp_error *er
     return CP_OK;
 }
 
-static cp_status reserve_numbers(cp_traffic *traffic, uint32_t vehicle, cp_error *error)
+static uint32_t row_of(const cp_traffic *traffic, uint32_t vehicle)
 {
-    if (vehicle < traffic->numbers)
-        return CP_OK;
-    size_t numbers = 2 * ((size_t)vehicle + 1);
-    uint32_t *row_of = realloc(traffic->row_of, numbers * sizeof *row_of);
-    if (!row_of)
-        return cp_fail_memory(error, "vehicle numbers");
-    for (size_t k = traffic->numbers; k < numbers; k++)
-        row_of[k] = SUMO_BRIDGE_NONE;
-    traffic->row_of = row_of;
-    traffic->numbers = numbers;
-    return CP_OK;
+    return cp_recent_rows_get(&traffic->row_of, vehicle);
+}
+
+// Rows of those there are now, and of none who were there before and are gone.
+static cp_status number_rows(cp_traffic *traffic, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; k < traffic->count && status == CP_OK; k++)
+        status = cp_recent_rows_set(&traffic->row_of, traffic->motions[k].after.vehicle,
+                                    (uint32_t)k, error);
+    for (size_t k = 0; k < traffic->previous_count && status == CP_OK; k++) {
+        uint32_t vehicle = traffic->previous[k].after.vehicle, row = row_of(traffic, vehicle);
+        if (row >= traffic->count || traffic->motions[row].after.vehicle != vehicle)
+            cp_recent_rows_clear(&traffic->row_of, vehicle);
+    }
+    return status;
 }
 
 // A vehicle that moved much further than its speeds explain was put there (teleport, moveTo).
@@ -117,8 +122,8 @@ static bool has_jumped(const cp_vehicle_state *before, const cp_vehicle_state *a
 // Way of a vehicle in the step just made, by the ballistic update; previous is the step before.
 static double way_m(const cp_traffic *traffic, const cp_vehicle_state *after)
 {
-    uint32_t row = traffic->row_of[after->vehicle];
-    if (row == SUMO_BRIDGE_NONE)
+    uint32_t row = row_of(traffic, after->vehicle);
+    if (row == CP_NO_ROW)
         return 0.0;
     double mean_m_s = 0.5 * (traffic->previous[row].after.speed_m_s + after->speed_m_s);
     return mean_m_s * traffic->step_length_s;
@@ -127,8 +132,8 @@ static double way_m(const cp_traffic *traffic, const cp_vehicle_state *after)
 static cp_vehicle_motion motion_to(const cp_traffic *traffic, const cp_vehicle_state *after)
 {
     cp_vehicle_motion motion = {.after = *after};
-    uint32_t row = traffic->row_of[after->vehicle];
-    if (row == SUMO_BRIDGE_NONE)
+    uint32_t row = row_of(traffic, after->vehicle);
+    if (row == CP_NO_ROW)
         return motion;
     const cp_vehicle_state *before = &traffic->previous[row].after;
     if (has_jumped(before, after, traffic->step_length_s))
@@ -151,7 +156,7 @@ static cp_status stop_held(cp_traffic *traffic, cp_error *error)
     cp_status status = CP_OK;
     for (size_t k = 0; status == CP_OK && k < traffic->held_count; k++) {
         uint32_t vehicle = traffic->held[k].vehicle;
-        if (traffic->row_of[vehicle] == SUMO_BRIDGE_NONE)
+        if (row_of(traffic, vehicle) == CP_NO_ROW)
             continue;
         status = source->set_speed_mode(vehicle, 0, error);
         if (status == CP_OK && source->set_lane_change_mode != NULL)
@@ -170,8 +175,8 @@ static cp_status keep_held(cp_traffic *traffic, cp_error *error)
     size_t kept = 0;
     for (size_t k = 0; k < traffic->held_count; k++) {
         held_vehicle held = traffic->held[k];
-        uint32_t row = traffic->row_of[held.vehicle];
-        if (row == SUMO_BRIDGE_NONE) {
+        uint32_t row = row_of(traffic, held.vehicle);
+        if (row == CP_NO_ROW) {
             held.is_away = true;
             traffic->held[kept++] = held;
             continue;
@@ -216,7 +221,7 @@ cp_status cp_traffic_hold(cp_traffic *traffic, uint32_t vehicle, double until_s,
         traffic->held = larger;
         traffic->held_room = room;
     }
-    cp_vehicle_state *state = &traffic->motions[traffic->row_of[vehicle]].after;
+    cp_vehicle_state *state = &traffic->motions[row_of(traffic, vehicle)].after;
     held_vehicle held = {.vehicle = vehicle, .until_s = until_s, .pose = *state, .last = *state};
     held.pose.speed_m_s = 0.0;
     held.pose.acceleration_m_s2 = 0.0;
@@ -238,9 +243,6 @@ cp_status cp_traffic_step(cp_traffic *traffic, cp_error *error)
         return status;
     if ((status = reserve_motions(traffic, count, error)) != CP_OK)
         return status;
-    for (size_t k = 0; k < count; k++)
-        if ((status = reserve_numbers(traffic, states[k].vehicle, error)) != CP_OK)
-            return status;
 
     // What was now is before; row_of still points into it.
     cp_vehicle_motion *spare = traffic->previous;
@@ -254,10 +256,8 @@ cp_status cp_traffic_step(cp_traffic *traffic, cp_error *error)
         traffic->motions[k] = motion_to(traffic, &state);
     }
     cp_lateral_overlays_prune(traffic->overlays);
-    for (size_t k = 0; k < traffic->previous_count; k++)
-        traffic->row_of[traffic->previous[k].after.vehicle] = SUMO_BRIDGE_NONE;
-    for (size_t k = 0; k < count; k++)
-        traffic->row_of[states[k].vehicle] = (uint32_t)k;
+    if ((status = number_rows(traffic, error)) != CP_OK)
+        return status;
     traffic->time_s = traffic->source->time_s();
     if ((status = keep_held(traffic, error)) != CP_OK)
         return status;
@@ -301,9 +301,8 @@ const cp_vehicle_motion *cp_traffic_motions(const cp_traffic *traffic, size_t *c
 
 const cp_vehicle_motion *cp_traffic_motion_of(const cp_traffic *traffic, uint32_t vehicle)
 {
-    if (vehicle >= traffic->numbers || traffic->row_of[vehicle] == SUMO_BRIDGE_NONE)
-        return NULL;
-    return &traffic->motions[traffic->row_of[vehicle]];
+    uint32_t row = row_of(traffic, vehicle);
+    return row != CP_NO_ROW ? &traffic->motions[row] : NULL;
 }
 
 const uint32_t *cp_traffic_departed(const cp_traffic *traffic, size_t *count)
@@ -387,12 +386,13 @@ cp_status cp_traffic_remove(cp_traffic *traffic, uint32_t vehicle, cp_error *err
     if (status != CP_OK)
         return status;
     // Close the gap, keeping the order of the others.
-    size_t row = traffic->row_of[vehicle];
+    size_t row = row_of(traffic, vehicle);
     memmove(&traffic->motions[row], &traffic->motions[row + 1],
             (traffic->count - row - 1) * sizeof *traffic->motions);
     traffic->count--;
-    traffic->row_of[vehicle] = SUMO_BRIDGE_NONE;
-    for (size_t k = row; k < traffic->count; k++)
-        traffic->row_of[traffic->motions[k].after.vehicle] = (uint32_t)k;
-    return CP_OK;
+    cp_recent_rows_clear(&traffic->row_of, vehicle);
+    for (size_t k = row; k < traffic->count && status == CP_OK; k++)
+        status = cp_recent_rows_set(&traffic->row_of, traffic->motions[k].after.vehicle,
+                                    (uint32_t)k, error);
+    return status;
 }

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "control/driver_error/ignored_foes.h"
 
+#include "core/recent_rows.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,8 +22,7 @@ typedef struct ego {
 struct cp_ignored_foes {
     ego *egos; /* only those who ignore somebody, or did until now */
     size_t count, capacity;
-    uint32_t *row_of; /* by vehicle number: row in egos + 1, or 0 */
-    size_t numbers;
+    cp_recent_rows row_of; /* by vehicle number: row in egos */
 };
 
 cp_status cp_ignored_foes_create(cp_ignored_foes **ignored, cp_error *error)
@@ -37,28 +38,18 @@ void cp_ignored_foes_destroy(cp_ignored_foes *ignored)
     for (size_t k = 0; k < ignored->count; k++)
         free(ignored->egos[k].foes);
     free(ignored->egos);
-    free(ignored->row_of);
+    cp_recent_rows_destroy(&ignored->row_of);
     free(ignored);
 }
 
 static ego *find_ego(const cp_ignored_foes *ignored, uint32_t vehicle)
 {
-    if (vehicle >= ignored->numbers || ignored->row_of[vehicle] == 0)
-        return NULL;
-    return &ignored->egos[ignored->row_of[vehicle] - 1];
+    uint32_t row = cp_recent_rows_get(&ignored->row_of, vehicle);
+    return row != CP_NO_ROW ? &ignored->egos[row] : NULL;
 }
 
 static cp_status add_ego(cp_ignored_foes *ignored, uint32_t vehicle, ego **added, cp_error *error)
 {
-    if (vehicle >= ignored->numbers) {
-        size_t numbers = 2 * ((size_t)vehicle + 1);
-        uint32_t *row_of = realloc(ignored->row_of, numbers * sizeof *row_of);
-        if (row_of == NULL)
-            return cp_fail_memory(error, "ignored vehicles");
-        memset(&row_of[ignored->numbers], 0, (numbers - ignored->numbers) * sizeof *row_of);
-        ignored->row_of = row_of;
-        ignored->numbers = numbers;
-    }
     if (ignored->count == ignored->capacity) {
         size_t capacity = ignored->capacity == 0 ? 16 : 2 * ignored->capacity;
         ego *egos = realloc(ignored->egos, capacity * sizeof *egos);
@@ -67,9 +58,12 @@ static cp_status add_ego(cp_ignored_foes *ignored, uint32_t vehicle, ego **added
         ignored->egos = egos;
         ignored->capacity = capacity;
     }
+    cp_status status =
+        cp_recent_rows_set(&ignored->row_of, vehicle, (uint32_t)ignored->count, error);
+    if (status != CP_OK)
+        return status;
     *added = &ignored->egos[ignored->count++];
     **added = (ego){.vehicle = vehicle};
-    ignored->row_of[vehicle] = (uint32_t)ignored->count;
     return CP_OK;
 }
 
@@ -166,16 +160,16 @@ static void forget_gone(ego *own, const cp_traffic *traffic)
     own->count = kept;
 }
 
-static void remove_ego(cp_ignored_foes *ignored, size_t row)
+static cp_status remove_ego(cp_ignored_foes *ignored, size_t row, cp_error *error)
 {
     ego *own = &ignored->egos[row];
     free(own->foes);
-    ignored->row_of[own->vehicle] = 0;
+    cp_recent_rows_clear(&ignored->row_of, own->vehicle);
     ignored->count--;
     if (row == ignored->count)
-        return;
+        return CP_OK;
     *own = ignored->egos[ignored->count];
-    ignored->row_of[own->vehicle] = (uint32_t)row + 1;
+    return cp_recent_rows_set(&ignored->row_of, own->vehicle, (uint32_t)row, error);
 }
 
 cp_status cp_ignored_foes_send(cp_ignored_foes *ignored, const cp_traffic *traffic, cp_error *error)
@@ -188,10 +182,10 @@ cp_status cp_ignored_foes_send(cp_ignored_foes *ignored, const cp_traffic *traff
         if (!is_gone && own->has_changed)
             status = send_one(own, traffic, error);
         own->has_changed = false;
-        if (is_gone || own->count == 0)
-            remove_ego(ignored, row);
-        else
+        if (!is_gone && own->count > 0)
             row++;
+        else if (status == CP_OK)
+            status = remove_ego(ignored, row, error);
     }
     return status;
 }

@@ -117,18 +117,22 @@ static void write_counts(FILE *out, const cp_study_data *data, const cp_comparis
     }
 }
 
-// Parameters that are probabilities; all of them for a model without any.
+static bool says_how_often(const char *name)
+{
+    return strstr(name, "probability") != NULL || strncmp(name, "rate_", 5) == 0;
+}
+
+// Parameters that say how often; all of them for a model without any.
 static void write_parameters(FILE *out, const json_t *parameters)
 {
     const char *name;
     json_t *value;
-    bool probabilities = false;
-    json_object_foreach((json_t *)parameters, name, value) probabilities |=
-        strstr(name, "probability") != NULL;
+    bool any = false;
+    json_object_foreach((json_t *)parameters, name, value) any |= says_how_often(name);
     const char *separator = " ";
     json_object_foreach((json_t *)parameters, name, value)
     {
-        if (!json_is_number(value) || (probabilities && !strstr(name, "probability")))
+        if (!json_is_number(value) || (any && !says_how_often(name)))
             continue;
         if (strcmp(name, "probability_1") == 0)
             fprintf(out, "%swith probability %g", separator, json_number_value(value));

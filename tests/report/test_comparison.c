@@ -165,6 +165,23 @@ static void answer_names_crashes_validity_and_assumptions(void **state)
     free(answer);
 }
 
+// How often an error happens, not everything about it.
+static void answer_says_how_often_drivers_err(void **state)
+{
+    fixture *f = *state;
+    cp_error error = {0};
+    char *answer = NULL;
+    json_t *kept = f->data.scenario[0].driver_errors;
+    f->data.scenario[0].driver_errors = json_pack(
+        "[{s:s, s:{s:f, s:f}}, {s:s, s:{s:f}}]", "model", "lane_drift", "parameters",
+        "duration_mean_s", 5.0, "rate_per_h", 20.0, "model", "own", "parameters", "length_m", 3.0);
+    assert_int_equal(cp_comparison_answer(&f->data, &f->comparison, &answer, &error), CP_OK);
+    assert_non_null(strstr(answer, "lane_drift rate_per_h = 20, own length_m = 3"));
+    json_decref(f->data.scenario[0].driver_errors);
+    f->data.scenario[0].driver_errors = kept;
+    free(answer);
+}
+
 // A seed that only one variant finished has no partner and is left out of the paired comparison.
 static void pairs_are_the_seeds_both_finished(void **state)
 {
@@ -297,6 +314,7 @@ int main(void)
         cmocka_unit_test(slices_add_up),
         cmocka_unit_test(same_database_same_json),
         cmocka_unit_test(answer_names_crashes_validity_and_assumptions),
+        cmocka_unit_test(answer_says_how_often_drivers_err),
         cmocka_unit_test(pairs_are_the_seeds_both_finished),
         cmocka_unit_test(injuries_agree_with_sql),
         cmocka_unit_test(groups_agree_with_sql),

@@ -77,7 +77,7 @@ class Vehicles
     }
     const char *text(uint32_t vehicle) const
     {
-        return has(vehicle) ? texts_[vehicle] : "";
+        return has(vehicle) ? &blocks_[texts_[vehicle] / BLOCK][texts_[vehicle] % BLOCK] : "";
     }
     void forget_id(const std::string &id)
     {
@@ -85,25 +85,26 @@ class Vehicles
     }
 
   private:
-    // A copy that stays where it is.
-    const char *keep(const std::string &id)
+    // A copy that stays where it is: number of its block times BLOCK, plus its place there. A
+    // longer one has a block of its own.
+    uint32_t keep(const std::string &id)
     {
-        const size_t size = id.size() + 1, block = 16384;
-        if (blocks_.empty() || used_ + size > room_) {
-            room_ = std::max(size, block);
-            blocks_.push_back(std::make_unique<char[]>(room_));
+        const size_t size = id.size() + 1;
+        if (blocks_.empty() || used_ + size > BLOCK) {
+            blocks_.push_back(std::make_unique<char[]>(std::max<size_t>(size, BLOCK)));
             used_ = 0;
         }
-        char *const text = &blocks_.back()[used_];
-        std::copy_n(id.c_str(), size, text);
+        const uint32_t place = static_cast<uint32_t>((blocks_.size() - 1) * BLOCK + used_);
+        std::copy_n(id.c_str(), size, &blocks_.back()[used_]);
         used_ += size;
-        return text;
+        return place;
     }
 
+    static constexpr uint32_t BLOCK = 16384; // 4 GB of names in all
     std::unordered_map<std::string, uint32_t> numbers_;
-    std::vector<const char *> texts_;
+    std::vector<uint32_t> texts_; // where it is kept
     std::vector<std::unique_ptr<char[]>> blocks_;
-    size_t used_ = 0, room_ = 0; // of the last block
+    size_t used_ = 0; // of the last block
 };
 
 struct Size {

@@ -13,9 +13,9 @@
 /* A counted crash with all that the surrogate needs to know of it. */
 typedef struct named_crash {
     const cp_found_contact *found; /* of the simulation, which finds no more */
-    cp_impact_names names;
-    char *id[2];
-    char *type[2];
+    cp_impact_names names;         /* its texts are the following */
+    char *id[2];                   /* owned */
+    char *type[2];                 /* owned */
 } named_crash;
 
 // What is happening in a replication; what is known about it is const.
@@ -77,7 +77,7 @@ static size_t number_of(const cp_simulation *simulation, size_t index)
     return number;
 }
 
-// All that SUMO knows of the two cars of a crash; the texts are the row's own names later on.
+// All that SUMO knows of the two cars of a crash, copied: it ends before the crash is simulated.
 static cp_status name_crash(const replication_run *run, const cp_found_contact *found,
                             named_crash *named, cp_error *error)
 {

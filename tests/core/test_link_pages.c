@@ -27,7 +27,7 @@ static long file_kb(void)
 
 static const char CONSTANT[] = "read again after it was given back";
 
-static void test_memory_falls_and_all_of_it_still_reads(void **state)
+static void memory_falls_and_all_of_it_still_reads(void **state)
 {
     (void)state;
     volatile const char *text = CONSTANT;
@@ -37,7 +37,7 @@ static void test_memory_falls_and_all_of_it_still_reads(void **state)
     assert_true(file_kb() < before_kb);
     assert_string_equal(CONSTANT, "read again after it was given back");
 
-    // Formatting reads tables of the C library, an unwritten number is none.
+    // Numbers to and from text read tables of the C library.
     char number[32];
     snprintf(number, sizeof number, "%.3f", strtod("2.125", NULL));
     assert_string_equal(number, "2.125");
@@ -46,7 +46,7 @@ static void test_memory_falls_and_all_of_it_still_reads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_memory_falls_and_all_of_it_still_reads),
+        cmocka_unit_test(memory_falls_and_all_of_it_still_reads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

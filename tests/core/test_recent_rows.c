@@ -9,7 +9,6 @@
 #include <stdint.h>
 
 #include <cmocka.h>
-#include <string.h>
 
 static void set(cp_recent_rows *rows, uint32_t number, uint32_t row)
 {

@@ -57,6 +57,9 @@ struct Driving {
     const std::string *id;
     uint32_t type = SUMO_BRIDGE_NONE; // looked up when it is first seen: it stays the same
     uint32_t lane = SUMO_BRIDGE_NONE; // as last seen
+    bool stands = false;              // where it was a step before, with the yaw it keeps there
+    double x_m = 0.0, y_m = 0.0, z_m = 0.0; // as last seen, as the yaw
+    double yaw_rad = 0.0;
 };
 
 // Vehicles by number and id. Numbers and texts are for good: contacts name vehicles that have long
@@ -348,6 +351,24 @@ void read_place(const std::string &id, uint32_t *last, cp_vehicle_state *state)
 
 enum class Where { ON_THE_ROAD, ELSEWHERE, GONE };
 
+// Where it is heading and how fast. One that stood already and has not moved since does both as
+// before: asking SUMO would cost two look-ups by id, half of what a step of a town costs beside
+// SUMO.
+void read_motion(Driving *driving, const libsumo::TraCIPosition &position, cp_vehicle_state *state)
+{
+    const bool has_stayed =
+        position.x == driving->x_m && position.y == driving->y_m && position.z == driving->z_m;
+    if (!driving->stands || !has_stayed) {
+        driving->yaw_rad = yaw_of_sumo_angle(libsumo::Vehicle::getAngle(*driving->id));
+        state->speed_m_s = libsumo::Vehicle::getSpeed(*driving->id);
+        driving->stands = has_stayed && state->speed_m_s == 0.0;
+        driving->x_m = position.x;
+        driving->y_m = position.y;
+        driving->z_m = position.z;
+    }
+    state->yaw_rad = driving->yaw_rad;
+}
+
 // Read one vehicle, if it is on the road.
 Where read_vehicle(Driving *driving, cp_vehicle_state *state)
 {
@@ -359,8 +380,10 @@ Where read_vehicle(Driving *driving, cp_vehicle_state *state)
     } catch (const libsumo::TraCIException &) {
         return Where::GONE; // taken out on the way, by us or by a calibrator: not among the arrived
     }
-    if (position.x <= -1e9 || position.y <= -1e9)
+    if (position.x <= -1e9 || position.y <= -1e9) {
+        driving->stands = false; // it may come back on the move
         return Where::ELSEWHERE;
+    }
     *state = cp_vehicle_state{};
     if (driving->type == SUMO_BRIDGE_NONE)
         driving->type = number_type(Vehicle::getTypeID(id));
@@ -371,8 +394,7 @@ Where read_vehicle(Driving *driving, cp_vehicle_state *state)
     state->front_x_m = position.x;
     state->front_y_m = position.y;
     state->elevation_m = position.z;
-    state->yaw_rad = yaw_of_sumo_angle(Vehicle::getAngle(id));
-    state->speed_m_s = Vehicle::getSpeed(id);
+    read_motion(driving, position, state);
     state->length_m = bridge->size_of_type[state->type].length_m;
     state->width_m = bridge->size_of_type[state->type].width_m;
     return Where::ON_THE_ROAD;

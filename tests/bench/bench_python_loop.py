@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """bench_python_loop.py STEPS SUMO_WORD...: what one would write with Python's libsumo: in each step
-the state of every vehicle, near pairs by a grid, and whether their rectangles overlap."""
+the state of every vehicle, near pairs by a grid, and whether their rectangles overlap. Its processor time
+before every STEP_CLOCK_EVERYth step goes to the file STEP_CLOCK, as step_clock.cpp writes it."""
 import math
+import os
 import sys
+import time
 
 import libsumo
 
@@ -31,7 +34,10 @@ def overlap(one, other):
 libsumo.start(sys.argv[2:])
 vehicle = libsumo.vehicle
 size, touching, contacts = {}, set(), 0
-for _ in range(int(sys.argv[1])):
+clock, every = open(os.environ["STEP_CLOCK"], "w"), int(os.environ["STEP_CLOCK_EVERY"])
+for step in range(int(sys.argv[1])):
+    if step % every == 0:
+        print(f"{time.process_time():.9f}", file=clock, flush=True)
     libsumo.simulationStep()
     grid, shape = {}, {}
     for name in vehicle.getIDList():

@@ -5,11 +5,14 @@
 The same traffic, with the same SUMO options, in four programs: plain 'sumo', an empty libsumo loop in
 C++, 'crashpulse run' with detection on and no driver error or function, and a Python libsumo script
 that reads all states and looks for overlapping pairs (with PYTHON, Debian's, which has libsumo; left
-out where it has none). Processor time, user and system, of the steps between SHORT and LONG simulated
-seconds: that of the long run less that of the short one, so that starting up costs nothing.
-Interleaved; per program the least of all repeats, of which the slow Python script makes two at most. Beside it the peak of resident memory in one more long
-run, of ours the worker's, and what of it is anonymous, the process's own: the rest are pages of program
-and library files, which processes share. The table goes to OUTPUT too. Exit status 1 when a bar is missed."""
+out where it has none). Processor time of the steps between SHORT and LONG simulated seconds. The
+programs run one after the other, REPEATS times (the Python script twice); every one writes its
+processor time each second of traffic (step_clock.cpp), and of every such second counts the least of all
+repeats: what a neighbour takes of a machine for a while does not last for all repeats of a second.
+Plain sumo cannot be looked into so; it counts as a whole, the least long run less the least short one.
+Beside it the peak of resident memory in one more long run, of ours the worker's, and what of it is
+anonymous, the process's own: the rest are pages of program and library files, which processes share.
+The table goes to OUTPUT too. Exit status 1 when a bar is missed."""
 import os
 import pathlib
 import shlex
@@ -26,14 +29,16 @@ build, source = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).r
 python, output = sys.argv[3:5]
 repeats = int(sys.argv[5]) if len(sys.argv) > 5 else 9
 SHORT_S, LONG_S, STEP_S = 150, 250, 0.1  # --scale 2: 0.8 to 1.3 thousand vehicles
+STRETCH_STEPS = 10
 LOOP_BAR, PYTHON_BAR, MEMORY_BAR = 1.20, 0.2, 1.3
 LOOK_S = 0.05  # between two looks at a program's memory
-environment = {**os.environ, "SUMO_HOME": "/usr/share/sumo"}
+environment = {**os.environ, "SUMO_HOME": "/usr/share/sumo", "STEP_CLOCK": os.devnull,
+               "STEP_CLOCK_EVERY": str(STRETCH_STEPS)}
 
 
-def start(words):
+def start(words, extra={}):
     return subprocess.Popen([str(word) for word in words], stdout=subprocess.DEVNULL,
-                            stderr=subprocess.PIPE, env=environment)
+                            stderr=subprocess.PIPE, env={**environment, **extra})
 
 
 def wait(process):
@@ -48,6 +53,17 @@ def wait(process):
 
 def cpu_s(words):
     return wait(start(words))
+
+
+def stretches_s(words, clock):
+    """Processor time of every stretch of steps between SHORT and LONG. Python has libsumo in itself."""
+    preload = {} if words[0] == python else {"LD_PRELOAD": str(build / "step_clock.so")}
+    wait(start(words, {**preload, "STEP_CLOCK": str(clock)}))
+    times = [float(line) for line in clock.read_text().split()]
+    first, last = (round(s / STEP_S / STRETCH_STEPS) for s in (SHORT_S, LONG_S))
+    if len(times) <= last:
+        sys.exit(f"{words[0]}: clock of {len(times)} stretches, {last + 1} needed")
+    return [after - before for before, after in zip(times[first:last], times[first + 1:last + 1])]
 
 
 def peak_of(words, name):
@@ -109,14 +125,15 @@ with tempfile.TemporaryDirectory() as name:
     if subprocess.run([python, "-c", "import libsumo"], stderr=subprocess.DEVNULL).returncode != 0:
         print(f"{python} has no libsumo: without the Python script")
         del programs["Python libsumo script"]
-    least = {label: {} for label in programs}
+    end_s = LONG_S + STRETCH_STEPS * STEP_S  # the last stretch needs a clock at its end
+    sumo_s = {SHORT_S: [], LONG_S: []}
+    runs = {label: [] for label in programs if label != "sumo"}
     for repeat in range(repeats):
-        for duration_s in (SHORT_S, LONG_S):
-            for label, program in programs.items():
-                if label == "Python libsumo script" and repeat >= 2:
-                    continue
-                used = cpu_s(program(duration_s))
-                least[label][duration_s] = min(used, least[label].get(duration_s, used))
+        for duration_s, found in sumo_s.items():
+            found.append(cpu_s(programs["sumo"](duration_s)))
+        for label, found in runs.items():
+            if label != "Python libsumo script" or repeat < 2:
+                found.append(stretches_s(programs[label](end_s), folder / "clock"))
         print(f"repeat {repeat + 1} of {repeats}", file=sys.stderr, flush=True)
     peak = {label: peak_of(program(LONG_S), "crashpulse-wor" if label == "crashpulse run" else "")
             for label, program in programs.items()}
@@ -125,10 +142,11 @@ with tempfile.TemporaryDirectory() as name:
                      "--no-step-log", "true", "--end", LONG_S] + WITHOUT_SCHEMAS, "")
 
 steps = (LONG_S - SHORT_S) / STEP_S
-cost = {label: (used[LONG_S] - used[SHORT_S]) / steps * 1e3 for label, used in least.items()}
+cost = {"sumo": (min(sumo_s[LONG_S]) - min(sumo_s[SHORT_S])) / steps * 1e3}
+cost |= {label: sum(map(min, zip(*found))) / steps * 1e3 for label, found in runs.items()}
 loop = cost["empty libsumo loop"]
 lines = [f"The town with {(hours[1] - hours[0]) * 3600 / (LONG_S - SHORT_S):.0f} vehicles at once on average, "
-         f"steps of {STEP_S} s, {steps:.0f} of them, the least of {repeats}.", "",
+         f"steps of {STEP_S} s, {steps:.0f} of them, of every {STRETCH_STEPS} the least of {repeats} runs.", "",
          "| | ms a step | of the loop | overhead, ms | peak, MB | of it anonymous | of sumo's peak |",
          "|---|---:|---:|---:|---:|---:|---:|"]
 for label, value in cost.items():

@@ -26,12 +26,13 @@ typedef struct frozen {
 
 struct cp_checkpoints {
     cp_checkpoint_options options;
-    double *times; /* of the last options.kept checkpoints, number n at n % options.kept */
-    size_t taken;  /* so far */
-    frozen *slots; /* copies */
-    size_t slot_count;
-    char *request; /* options.request_max bytes, in a copy */
-    char *arena;   /* answers, one behind the other */
+    double *times;     /* of the last options.kept checkpoints, number n at n % options.kept */
+    size_t taken;      /* so far */
+    size_t since_copy; /* checkpoints since the last that was copied */
+    frozen *slots;     /* copies */
+    size_t slot_count; /* one more than the checkpoints that can be branched from */
+    char *request;     /* options.request_max bytes, in a copy */
+    char *arena;       /* answers, one behind the other */
     size_t arena_used;
 };
 
@@ -201,8 +202,7 @@ cp_status cp_checkpoints_create(const cp_checkpoint_options *options, cp_checkpo
     if (self == NULL)
         return cp_fail_memory(error, "checkpoints");
     self->options = *options;
-    // As many copies as the way back to the oldest checkpoint and on to a copy before it can have.
-    self->slot_count = (options->kept + options->every - 2) / options->every + 1;
+    self->slot_count = options->kept + 1;
     self->slots = calloc(self->slot_count, sizeof *self->slots);
     self->times = calloc(options->kept, sizeof *self->times);
     self->request = calloc(1, options->request_max);
@@ -218,19 +218,36 @@ cp_status cp_checkpoints_create(const cp_checkpoint_options *options, cp_checkpo
     return CP_OK;
 }
 
-// A free slot; the oldest makes way.
-static frozen *free_slot(cp_checkpoints *self)
+// The youngest copy that is not younger; NULL when there is none.
+static frozen *copy_before(const cp_checkpoints *self, double time_s)
 {
-    frozen *oldest = &self->slots[0];
+    frozen *found = NULL;
     for (size_t k = 0; k < self->slot_count; k++) {
         frozen *slot = &self->slots[k];
-        if (slot->pid == 0)
-            return slot;
-        if (slot->time_s < oldest->time_s)
-            oldest = slot;
+        if (slot->pid != 0 && slot->time_s <= time_s &&
+            (found == NULL || slot->time_s > found->time_s))
+            found = slot;
     }
-    end_frozen(oldest);
-    return oldest;
+    return found;
+}
+
+// Copies older than one that serves the oldest checkpoint as well. Those that stay are of
+// checkpoints that can be branched from, and one before them if the oldest of these has none.
+static void end_needless(cp_checkpoints *self)
+{
+    size_t kept = self->options.kept, known = self->taken < kept ? self->taken : kept;
+    const frozen *needed = copy_before(self, self->times[(self->taken - known) % kept]);
+    for (size_t k = 0; needed != NULL && k < self->slot_count; k++)
+        if (self->slots[k].time_s < needed->time_s)
+            end_frozen(&self->slots[k]);
+}
+
+static frozen *free_slot(cp_checkpoints *self)
+{
+    size_t k = 0;
+    while (self->slots[k].pid != 0)
+        k++; // one is free: end_needless leaves as many copies as checkpoints at most
+    return &self->slots[k];
 }
 
 static cp_status freeze(cp_checkpoints *self, double time_s, cp_error *error)
@@ -258,24 +275,17 @@ static cp_status freeze(cp_checkpoints *self, double time_s, cp_error *error)
     return cp_fail(error, CP_RUN_FAILED, "checkpoint at %.2f s: %s", time_s, strerror(failed));
 }
 
-cp_status cp_checkpoints_take(cp_checkpoints *self, double time_s, cp_error *error)
+cp_status cp_checkpoints_take(cp_checkpoints *self, double time_s, bool is_wanted, bool *is_copied,
+                              cp_error *error)
 {
-    size_t number = self->taken++;
-    self->times[number % self->options.kept] = time_s;
-    return number % self->options.every == 0 ? freeze(self, time_s, error) : CP_OK;
-}
-
-// The youngest copy that is not younger; NULL when there is none.
-static frozen *copy_before(const cp_checkpoints *self, double time_s)
-{
-    frozen *found = NULL;
-    for (size_t k = 0; k < self->slot_count; k++) {
-        frozen *slot = &self->slots[k];
-        if (slot->pid != 0 && slot->time_s <= time_s &&
-            (found == NULL || slot->time_s > found->time_s))
-            found = slot;
-    }
-    return found;
+    bool is_due = is_wanted || self->taken == 0 || self->since_copy + 1 >= self->options.every;
+    if (is_copied != NULL)
+        *is_copied = is_due;
+    self->times[self->taken++ % self->options.kept] = time_s;
+    self->since_copy = is_due ? 0 : self->since_copy + 1;
+    cp_status status = is_due ? freeze(self, time_s, error) : CP_OK;
+    end_needless(self);
+    return status;
 }
 
 bool cp_checkpoints_find(const cp_checkpoints *self, double latest_s, double *time_s)

@@ -9,18 +9,19 @@
 
 /* Frozen copies of this process, from which what it does can be gone through again, differently.
  *
- *   worker ── fork at every `every`-th checkpoint ──► copy (waits)
+ *   worker ── fork at some checkpoints ──► copy (waits)
  *                └── fork on request ──► guide: goes on to the checkpoint asked for
  *                                          └── fork ──► branch: goes on from there
  *
  * A copy is a forked child that waits for a request; a guide is its child, which goes on as the
  * original did to the checkpoint asked for and forks one branch after another there. They run from
  * the state of the checkpoint, answer through a pipe and end. (At its own checkpoint a copy forks
- * the branches itself.) A copy costs the worker as much as a second or so of light traffic, most of
- * it for pages that both write to, so it is cheaper to go some seconds twice when a crash has
- * happened than to keep a copy of every checkpoint. The last `kept` checkpoints can be branched
- * from, the oldest copy makes way. Whoever loses its parent dies (branch_process.h); a branch that
- * aborts, crashes or runs out of time has an answer that says so, nothing more.
+ * the branches itself.) A copy costs the worker as much as some seconds of light traffic, most of
+ * it for pages that both write to, so it is cheaper to go some way twice when a crash has happened
+ * than to keep a copy of every checkpoint; the caller says when it is time for one. The last `kept`
+ * checkpoints can be branched from; copies that none of them needs end. Whoever loses its parent
+ * dies (branch_process.h); a branch that aborts, crashes or runs out of time has an answer that
+ * says so, nothing more.
  *
  * Between create and destroy neither this process nor the checkpoints allocate memory on the heap
  * for any of this, so that a branch that changes nothing repeats the original bit by bit. */
@@ -28,7 +29,7 @@ typedef struct cp_checkpoints cp_checkpoints;
 
 typedef struct cp_checkpoint_options {
     size_t kept;        /* checkpoints at a time, >= 1 */
-    size_t every;       /* checkpoints for one copy, >= 1; more than 1 needs advance */
+    size_t every;       /* checkpoints for one copy at most, >= 1; more than 1 needs advance */
     unsigned cpu_s;     /* processor time of a guide or branch, at most */
     unsigned wall_s;    /* wall time of a guide's way or a branch, at most */
     size_t request_max; /* bytes of the largest request */
@@ -58,10 +59,11 @@ CP_MUST_CHECK cp_status cp_checkpoints_create(const cp_checkpoint_options *optio
 /* Ends all checkpoints and waits for them; NULL is fine. */
 void cp_checkpoints_destroy(cp_checkpoints *checkpoints);
 
-/* The present state is that of time_s; times rise. Freezes it when a copy is due. Errors:
- * CP_RUN_FAILED when the system gives no process or descriptor more. */
+/* The present state is that of time_s; times rise. Freezes it when wanted, and unasked when it is
+ * the first or `every` checkpoints after the last copy; is_copied (may be NULL): whether it did.
+ * Errors: CP_RUN_FAILED when the system gives no process or descriptor more. */
 CP_MUST_CHECK cp_status cp_checkpoints_take(cp_checkpoints *checkpoints, double time_s,
-                                            cp_error *error);
+                                            bool is_wanted, bool *is_copied, cp_error *error);
 
 /* The youngest checkpoint not younger than latest_s: its time; false when there is none, or no copy
  * as old as that. */

@@ -13,8 +13,13 @@
 #define CRASHES_MAX ((size_t)1 << 20)
 #define VEHICLES_MAX ((size_t)1 << 24)
 #define NEVER (-1e300)
-// checkpoint.h; 5, 8 and 10 cost the same within the scatter of bench_pairs.
-#define CHECKPOINTS_FOR_A_COPY 8
+// When a copy is due (checkpoint.h). It is worth its cost when going on from the last one costs
+// some eight times as much: found for three scenarios from what copies, steps and crashes cost
+// there. A way is counted in vehicles times steps, a copy costs so much and a share for every
+// vehicle. Never in processor time: which copies there are must not depend on the machine.
+#define COPY_VEHICLE_STEPS 10000.0
+#define COPY_STEPS 100.0
+#define CHECKPOINTS_FOR_A_COPY 30
 
 /* What is known of a vehicle, by number; all zero before it is first seen. */
 typedef struct vehicle_past {
@@ -38,7 +43,8 @@ struct cp_counterfactual {
     cp_checkpoints *checkpoints;
     double last_checkpoint_s; /* NEVER before the first */
     double next_checkpoint_s;
-    size_t found_seen; /* contacts of the simulation looked at so far */
+    double way_vehicle_steps; /* since the last copy */
+    size_t found_seen;        /* contacts of the simulation looked at so far */
     size_t pair_count;
 
     // Address space that costs what is written into it. The heap is the simulation's alone as long
@@ -231,6 +237,19 @@ static cp_status branch(cp_counterfactual *self, size_t index, cp_error *error)
     return status;
 }
 
+// Freeze this checkpoint, if the way from the last copy has become long.
+static cp_status take_checkpoint(cp_counterfactual *self, double time_s, cp_error *error)
+{
+    size_t vehicles;
+    cp_traffic_motions(self->world.simulation->traffic, &vehicles);
+    bool is_far = self->way_vehicle_steps >= COPY_VEHICLE_STEPS + COPY_STEPS * (double)vehicles;
+    bool is_copied;
+    cp_status status = cp_checkpoints_take(self->checkpoints, time_s, is_far, &is_copied, error);
+    if (is_copied)
+        self->way_vehicle_steps = 0.0;
+    return status;
+}
+
 // Who errs now whoever the other is, and since which checkpoint without a break.
 static void note_faults(cp_counterfactual *self, double time_s)
 {
@@ -250,6 +269,9 @@ cp_status cp_counterfactual_step(cp_counterfactual *self, cp_error *error)
 {
     cp_simulation *simulation = self->world.simulation;
     double time_s = cp_traffic_time_s(simulation->traffic);
+    size_t vehicles;
+    cp_traffic_motions(simulation->traffic, &vehicles);
+    self->way_vehicle_steps += (double)vehicles;
     cp_status status = remember_inserted(self, error);
     for (; status == CP_OK && self->found_seen < simulation->found_count; self->found_seen++)
         if (simulation->found[self->found_seen].found_as == CP_FOUND_CRASH)
@@ -264,7 +286,7 @@ cp_status cp_counterfactual_step(cp_counterfactual *self, cp_error *error)
         self->world.study->counterfactual.checkpoint_interval_s;
     note_faults(self, time_s);
     self->last_checkpoint_s = time_s;
-    return cp_checkpoints_take(self->checkpoints, time_s, error);
+    return take_checkpoint(self, time_s, error);
 }
 
 // ---- outcomes ------------------------------------------------------------------------------

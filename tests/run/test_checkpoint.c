@@ -106,7 +106,7 @@ static cp_checkpoints *create(world *w, size_t kept, unsigned cpu_s)
 static void take(cp_checkpoints *checkpoints, double time_s)
 {
     cp_error error = {0};
-    if (cp_checkpoints_take(checkpoints, time_s, &error) != CP_OK)
+    if (cp_checkpoints_take(checkpoints, time_s, false, NULL, &error) != CP_OK)
         fail_msg("%s", error.text);
 }
 
@@ -167,32 +167,66 @@ static long own_children(void)
     return count;
 }
 
+// The last `kept` checkpoints, and no other, can be branched from, and twice.
+static void assert_kept_are_reached(const world *w, cp_checkpoints *checkpoints, int kept)
+{
+    deed what = COUNT_UP;
+    for (int back = 0; back < kept + 2; back++) {
+        double time_s = 0.0;
+        cp_branch_end ends[2];
+        bool is_kept = back < kept && back < w->count;
+        int then = w->count - back;
+        assert_int_equal(cp_checkpoints_find(checkpoints, then + 0.5, &time_s), is_kept);
+        if (!is_kept)
+            continue;
+        assert_true(time_s == then);
+        assert_true(cp_checkpoints_branch(checkpoints, then, &what, sizeof what, 2, ends));
+        for (int k = 0; k < 2; k++) {
+            assert_true(ends[k].answered);
+            assert_int_equal(*(const int *)ends[k].answer, then + 1 + k);
+        }
+    }
+}
+
 // Whatever the number of checkpoints for a copy: the same checkpoints, the same answers.
 static void checkpoints_between_copies_are_reached(void **unused)
 {
     (void)unused;
-    deed what = COUNT_UP;
     for (size_t every = 1; every <= 7; every++) {
         world w = {0};
-        double time_s = 0.0;
-        cp_branch_end ends[2];
         cp_checkpoints *checkpoints = create_every(&w, 5, every, 10);
         for (w.count = 1; w.count <= 12; w.count++) {
             take(checkpoints, w.count);
             assert_true(own_children() <= 1 + (long)((5 + every - 2) / every));
-            for (int back = 0; back < 7; back++) {
-                bool is_kept = back < 5 && back < w.count;
-                int then = w.count - back;
-                assert_int_equal(cp_checkpoints_find(checkpoints, then + 0.5, &time_s), is_kept);
-                if (!is_kept)
-                    continue;
-                assert_true(time_s == then);
-                assert_true(cp_checkpoints_branch(checkpoints, then, &what, sizeof what, 2, ends));
-                for (int k = 0; k < 2; k++) {
-                    assert_true(ends[k].answered);
-                    assert_int_equal(*(const int *)ends[k].answer, then + 1 + k);
-                }
-            }
+            assert_kept_are_reached(&w, checkpoints, 5);
+        }
+        cp_checkpoints_destroy(checkpoints);
+    }
+}
+
+// Copies in any order that the caller wishes: as few as serve the kept checkpoints.
+static void a_copy_comes_when_it_is_wanted(void **unused)
+{
+    (void)unused;
+    enum { KEPT = 3, EVERY = 4, TAKEN = 10 };
+    for (unsigned wishes = 0; wishes < 1u << 5; wishes++) {
+        world w = {0};
+        cp_checkpoints *checkpoints = create_every(&w, KEPT, EVERY, 10);
+        int copied_at[TAKEN + 1] = {0};
+        for (w.count = 1; w.count <= TAKEN; w.count++) {
+            cp_error error = {0};
+            bool is_wanted = wishes >> w.count % 5 & 1, is_copied = false;
+            assert_int_equal(
+                cp_checkpoints_take(checkpoints, w.count, is_wanted, &is_copied, &error), CP_OK);
+            copied_at[w.count] = is_copied;
+            assert_true(is_copied || !is_wanted);
+            assert_kept_are_reached(&w, checkpoints, KEPT);
+
+            // Those of the kept checkpoints, and one before them if the oldest has none.
+            int oldest = w.count > KEPT ? w.count - KEPT + 1 : 1, needed = !copied_at[oldest];
+            for (int k = oldest; k <= w.count; k++)
+                needed += copied_at[k];
+            assert_int_equal(own_children(), needed);
         }
         cp_checkpoints_destroy(checkpoints);
     }
@@ -441,6 +475,7 @@ int main(void)
         cmocka_unit_test(goes_on_from_the_frozen_state),
         cmocka_unit_test(the_oldest_makes_way),
         cmocka_unit_test(checkpoints_between_copies_are_reached),
+        cmocka_unit_test(a_copy_comes_when_it_is_wanted),
         cmocka_unit_test(a_checkpoint_that_is_not_reached_says_why),
         cmocka_unit_test(files_of_the_original_are_left_alone),
         cmocka_unit_test(a_branch_that_dies_harms_nobody),

@@ -194,6 +194,22 @@ static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp
     return status;
 }
 
+bool cp_fit_draws_starts(const cp_fit *fit)
+{
+    return fit->generations == 0 && fit->starts > 1;
+}
+
+// An eighth of the evaluations must find the slopes once and take a step.
+static cp_status check_drawn_starts(const cp_yaml_file *file, const cp_fit *fit, cp_error *error)
+{
+    size_t least = 8 * (fit->unknown_count + 2);
+    if (!cp_fit_draws_starts(fit) || fit->slope_evaluations >= least)
+        return CP_OK;
+    return cp_yaml_fail(file, error, "slope_evaluations",
+                        "must be at least %zu for %zu starts without generations, found %zu", least,
+                        fit->starts, fit->slope_evaluations);
+}
+
 // Variables of which one level at a time is left out.
 static cp_status read_leave_out(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
                                 cp_error *error)
@@ -420,6 +436,8 @@ cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error)
     for (size_t row = 0; status == CP_OK && row < yaml->unknowns_count; row++)
         status = read_unknown(&file, &yaml->unknowns[row], row, fit, error);
     fit->unknown_count = yaml->unknowns_count;
+    if (status == CP_OK)
+        status = check_drawn_starts(&file, fit, error);
     if (status == CP_OK)
         status = load_named_files(&file, yaml, fit, error);
     cp_yaml_close(&file);

@@ -49,9 +49,10 @@ typedef struct cp_fit {
     double global_time_step_s; /* default 0.0005 */
     double local_time_step_s;  /* default 0.0005 */
     size_t local_evaluations;  /* of Nelder-Mead, default 1000; 0: none */
-    size_t starts;             /* global searches from other seeds; the best counts; default 1 */
+    size_t starts;             /* global searches from other seeds; the best counts; default 1.
+                                  Without generations: drawn around base (drawn_starts.h) */
     size_t slope_evaluations;  /* of least squares, default 0: none; of several starts each gets
-                                  a quarter, then the best all */
+                                  a quarter, an eighth if drawn, the best in the end all */
     double soft_g;     /* error from which on least squares count the absolute value, not the
                           square; default 0.3 */
     double prior_g;    /* what an unknown must take off the summed errors to move through the
@@ -69,6 +70,9 @@ typedef struct cp_fit {
 
 /* Errors: CP_BAD_INPUT with file, line and field. The caller destroys. */
 CP_MUST_CHECK cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error);
+/* Whether its starts are drawn around the base (drawn_starts.h), not found by global searches. */
+bool cp_fit_draws_starts(const cp_fit *fit);
+
 void cp_fit_destroy(cp_fit *fit);
 
 #endif

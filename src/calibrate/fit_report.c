@@ -89,11 +89,18 @@ static void write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *c
     fprintf(file,
             "# Made by crashpulse calibrate; the report of the fit stands beside this file.\n");
     fprintf(file, "# fit file sha256 %s\n# reference sha256 %s\n", fit->hash, fit->reference.hash);
-    fprintf(file,
-            "# %zu x (%s, seed %u, population %zu, generations %zu, then least squares, %zu "
-            "evaluations), then Nelder-Mead, %zu evaluations\n",
-            fit->starts, fit->algorithm, fit->seed, fit->population, fit->generations,
-            fit->slope_evaluations, fit->local_evaluations);
+    if (cp_fit_draws_starts(fit))
+        fprintf(
+            file,
+            "# %zu starts drawn around the base (seed %u), least squares, %zu evaluations for the "
+            "last, then Nelder-Mead, %zu evaluations\n",
+            fit->starts, fit->seed, fit->slope_evaluations, fit->local_evaluations);
+    else
+        fprintf(file,
+                "# %zu x (%s, seed %u, population %zu, generations %zu, then least squares, %zu "
+                "evaluations), then Nelder-Mead, %zu evaluations\n",
+                fit->starts, fit->algorithm, fit->seed, fit->population, fit->generations,
+                fit->slope_evaluations, fit->local_evaluations);
     write_misfit(file, fit, calibration);
     fprintf(file, "vehicle: %s\n", fit->name);
     if (fit->description[0] != '\0')
@@ -264,17 +271,32 @@ static void write_objective(FILE *file, const cp_fit *fit, const cp_calibration 
             fit->pulse_count, calibration->objective);
 }
 
-static void write_report(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+// How it was searched for.
+static void write_way(FILE *file, const cp_fit *fit)
 {
-    fprintf(file, "# Fit of %s\n\n", fit->name);
-    write_objective(file, fit, calibration);
-    fprintf(file,
+    if (cp_fit_draws_starts(fit))
+        fprintf(file,
+                "%zu starts, the base and vehicles drawn around it (seed %u), narrowed down by "
+                "least squares (%zu evaluations for the last, time step %g s); from the best "
+                "Nelder-Mead (%zu evaluations).\n",
+                fit->starts, fit->seed, fit->slope_evaluations, fit->local_time_step_s,
+                fit->local_evaluations);
+    else
+        fprintf(
+            file,
             "%zu start%s of: global search `%s` (seed %u, population %zu, %zu generations, time "
             "step %g s), then least squares (%zu evaluations); from the best Nelder-Mead (%zu "
             "evaluations, time step %g s).\n",
             fit->starts, fit->starts == 1 ? "" : "s", fit->algorithm, fit->seed, fit->population,
             fit->generations, fit->global_time_step_s, fit->slope_evaluations,
             fit->local_evaluations, fit->local_time_step_s);
+}
+
+static void write_report(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    fprintf(file, "# Fit of %s\n\n", fit->name);
+    write_objective(file, fit, calibration);
+    write_way(file, fit);
     if (fit->slope_evaluations > 0)
         fprintf(file, "\nLeast squares count an error above %g g by its absolute value.\n",
                 fit->soft_g);

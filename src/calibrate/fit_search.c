@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/fit_search.h"
 
+#include "calibrate/drawn_starts.h"
 #include "calibrate/least_squares.h"
 #include "calibrate/objective.h"
 #include "calibrate/optimiser.h"
@@ -305,7 +306,30 @@ static void state_path(const char *stem, size_t start, char path[4096])
     snprintf(path, 4096, "%s.start%zu.fit.state", stem, start + 1);
 }
 
-// Of several starts each goes down the slopes a little way, the best the whole of it.
+static cp_status descend(void *context, size_t evaluations, double *point)
+{
+    return search_slopes(context, evaluations, point);
+}
+
+// Without a global search: from what is known and from points drawn around it.
+static cp_status search_drawn_starts(search *run, uint32_t seed, double *point)
+{
+    const cp_fit *fit = run->fit;
+    cp_drawn_starts starts = {.value = value_at,
+                              .descend = descend,
+                              .context = run,
+                              .known = run->known,
+                              .dimension = fit->unknown_count,
+                              .count = fit->starts,
+                              .evaluations = fit->slope_evaluations,
+                              .seed = seed};
+    run->time_step_s = fit->local_time_step_s;
+    cp_status status = cp_drawn_starts_search(&starts, point, run->error);
+    return status == CP_OK ? run->failed : status;
+}
+
+// By a global search. Of several starts each goes down the slopes a little way, the best the whole
+// of it.
 static cp_status search_starts(search *run, const char *stem, uint32_t seed, double *point)
 {
     const cp_fit *fit = run->fit;
@@ -355,7 +379,8 @@ cp_status cp_fit_search(const cp_fit *fit, const bool *use, const char *state_st
     search run = {.fit = fit, .use = use, .work = work, .failed = CP_OK, .error = error};
     cp_candidate_point(&fit->base, fit->unknown, fit->unknown_count, run.known);
     double point[CP_UNKNOWNS_MAX] = {0};
-    cp_status status = search_starts(&run, state_stem, seed, point);
+    cp_status status = cp_fit_draws_starts(fit) ? search_drawn_starts(&run, seed, point)
+                                                : search_starts(&run, state_stem, seed, point);
     if (status == CP_OK)
         status = search_locally(&run, point);
     if (status != CP_OK)

@@ -9,7 +9,8 @@
 
 /* One search for the vehicle that fits a set of cases: from each of the fit's starts a global
  * search (pagmo), then least squares (GSL) where the fit asks for it; from the best of them
- * Nelder-Mead (GSL). */
+ * Nelder-Mead (GSL). Several starts without generations of a global search are drawn around what is
+ * known instead (drawn_starts.h). */
 
 /* What a model does in every case. */
 typedef struct cp_fit_work {

@@ -168,6 +168,44 @@ static void slopes_lead_to_the_twin(void **state)
     close_workshop(&shop);
 }
 
+// Starts drawn around the base find it too, the same in one thread and in two, and the report says
+// so.
+static void drawn_starts_lead_to_the_twin(void **state)
+{
+    (void)state;
+    cp_vehicle_model found[2];
+    for (int k = 0; k < 2; k++) {
+        char lines[768];
+        snprintf(lines, sizeof lines,
+                 "generations: 0\nstarts: 5\nslope_evaluations: 60\nlocal_evaluations: 0\n"
+                 "threads: %d\n%s",
+                 k + 1, TWO_UNKNOWNS);
+        workshop shop = open_workshop(lines);
+        cp_fit fit;
+        cp_calibration calibration;
+        cp_error error = {0};
+        if (cp_fit_load(shop.fit_path, &fit, &error) != CP_OK)
+            fail_msg("%s", error.text);
+        if (cp_calibration_run(&fit, &calibration, &error) != CP_OK)
+            fail_msg("%s", error.text);
+        assert_true(calibration.validation.mean_abs_error_g < 0.02);
+        found[k] = calibration.model;
+        assert_int_equal(cp_calibration_write(&fit, &calibration, &error), CP_OK);
+        char path[256], report[16384] = "";
+        snprintf(path, sizeof path, "%s/twin.yaml.fit.md", shop.folder);
+        FILE *file = fopen(path, "r");
+        assert_non_null(file);
+        assert_true(fread(report, 1, sizeof report - 1, file) > 0);
+        assert_int_equal(fclose(file), 0);
+        assert_non_null(strstr(report, "5 starts, the base and vehicles drawn around it"));
+        cp_calibration_destroy(&calibration);
+        cp_fit_destroy(&fit);
+        close_workshop(&shop);
+    }
+    for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++)
+        assert_near(cp_vehicle_model_get(&found[0], k), cp_vehicle_model_get(&found[1], k), 0.0);
+}
+
 // What is known of a car before the fit holds an unknown back as strongly as the fit file says.
 static void what_is_known_holds_back(void **state)
 {
@@ -265,6 +303,9 @@ static void errors_name_line_and_field(void **state)
         {"plausible:\n  speed_km_h: 56\n  peak_g: {min: 40, max: 30}\n  source: x\n"
          "unknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",
          ":8: plausible.peak_g.max must be above min = 40"},
+        {"generations: 0\nstarts: 4\nslope_evaluations: 23\n"
+         "unknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",
+         ":8: slope_evaluations must be at least 24 for 4 starts without generations, found 23"},
     };
     for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
         workshop shop = open_workshop(CASES[k].lines);
@@ -282,6 +323,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_twin_is_found_again),
         cmocka_unit_test(slopes_lead_to_the_twin),
+        cmocka_unit_test(drawn_starts_lead_to_the_twin),
         cmocka_unit_test(what_is_known_holds_back),
         cmocka_unit_test(bounds_of_the_pulse_count),
         cmocka_unit_test(threads_do_not_change_the_result),

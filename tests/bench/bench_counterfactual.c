@@ -15,8 +15,8 @@
  * four more branches a crash cost; what the second costs more than the first is the checkpoints,
  * the null treatment and one treatment. Last, all that pairs cost, shared among the branches.
  * Processor time of the workers with all their checkpoints and branches, so that other work on the
- * machine counts little; the three by turns, of each the least of several runs, so that it counts
- * less. Names of scenarios choose some of them. */
+ * machine counts little; the three by turns, of each the least of several runs where one is short,
+ * so that it counts less. Names of scenarios choose some of them. */
 
 static const char HEAD[] = "study: bench\n"
                            "design: %s\n"
@@ -44,7 +44,7 @@ static const traffic TRAFFIC[] = {
     {"left_turn", 900, 15, "      - {model: failed_to_see, parameters: {probability_1: 0.3}}\n"},
     {"head_on_overtaking", 900, 5,
      "      - {model: risky_overtaking, parameters: {probability_1: 0.5}}\n"},
-    {"town", 450, 3,
+    {"town", 450, 1,
      "      - {model: failed_to_see, parameters: {probability_1: 0.02}}\n"
      "      - {model: misjudged_gap, parameters: {probability_1: 0.02}}\n"
      "      - {model: late_braking, parameters: {rate_per_h: 10}}\n"},

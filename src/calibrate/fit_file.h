@@ -70,9 +70,9 @@ typedef struct cp_fit {
 
 /* Errors: CP_BAD_INPUT with file, line and field. The caller destroys. */
 CP_MUST_CHECK cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error);
+void cp_fit_destroy(cp_fit *fit);
+
 /* Whether its starts are drawn around the base (drawn_starts.h), not found by global searches. */
 bool cp_fit_draws_starts(const cp_fit *fit);
-
-void cp_fit_destroy(cp_fit *fit);
 
 #endif

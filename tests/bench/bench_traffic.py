@@ -36,7 +36,7 @@ environment = {**os.environ, "SUMO_HOME": "/usr/share/sumo", "STEP_CLOCK": os.de
                "STEP_CLOCK_EVERY": str(STRETCH_STEPS)}
 
 
-def start(words, extra={}):
+def start(words, **extra):
     return subprocess.Popen([str(word) for word in words], stdout=subprocess.DEVNULL,
                             stderr=subprocess.PIPE, env={**environment, **extra})
 
@@ -58,7 +58,7 @@ def cpu_s(words):
 def stretches_s(words, clock):
     """Processor time of every stretch of steps between SHORT and LONG. Python has libsumo in itself."""
     preload = {} if words[0] == python else {"LD_PRELOAD": str(build / "step_clock.so")}
-    wait(start(words, {**preload, "STEP_CLOCK": str(clock)}))
+    wait(start(words, **preload, STEP_CLOCK=str(clock)))
     times = [float(line) for line in clock.read_text().split()]
     first, last = (round(s / STEP_S / STRETCH_STEPS) for s in (SHORT_S, LONG_S))
     if len(times) <= last:

@@ -84,6 +84,15 @@ static void close_workshop(const workshop *shop)
     assert_int_equal(rmdir(shop->folder), 0);
 }
 
+static void run_fit(const workshop *shop, cp_fit *fit, cp_calibration *calibration)
+{
+    cp_error error = {0};
+    if (cp_fit_load(shop->fit_path, fit, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    if (cp_calibration_run(fit, calibration, &error) != CP_OK)
+        fail_msg("%s", error.text);
+}
+
 static const char TWO_UNKNOWNS[] = "unknowns:\n"
                                    "  - {name: longitudinal_collapse_begin_kn, min: 80, max: 200}\n"
                                    "  - {name: longitudinal_collapse_end_kn, min: 120, max: 320}\n";
@@ -98,10 +107,7 @@ static void a_twin_is_found_again(void **state)
     cp_fit fit;
     cp_calibration calibration;
     cp_error error = {0};
-    if (cp_fit_load(shop.fit_path, &fit, &error) != CP_OK)
-        fail_msg("%s", error.text);
-    if (cp_calibration_run(&fit, &calibration, &error) != CP_OK)
-        fail_msg("%s", error.text);
+    run_fit(&shop, &fit, &calibration);
     assert_true(calibration.validation.mean_abs_error_g < 0.2);
     assert_int_equal(calibration.cross_count, 1);
     assert_int_equal(calibration.cross[0].part_count, 2);
@@ -152,10 +158,7 @@ static void slopes_lead_to_the_twin(void **state)
     cp_fit fit;
     cp_calibration calibration;
     cp_error error = {0};
-    if (cp_fit_load(shop.fit_path, &fit, &error) != CP_OK)
-        fail_msg("%s", error.text);
-    if (cp_calibration_run(&fit, &calibration, &error) != CP_OK)
-        fail_msg("%s", error.text);
+    run_fit(&shop, &fit, &calibration);
     assert_true(calibration.validation.mean_abs_error_g < 0.02);
     assert_near(calibration.model.longitudinal_collapse_begin_kn, 110.0, 2.0);
     assert_int_equal(calibration.cross_count, 1);
@@ -184,10 +187,7 @@ static void drawn_starts_lead_to_the_twin(void **state)
         cp_fit fit;
         cp_calibration calibration;
         cp_error error = {0};
-        if (cp_fit_load(shop.fit_path, &fit, &error) != CP_OK)
-            fail_msg("%s", error.text);
-        if (cp_calibration_run(&fit, &calibration, &error) != CP_OK)
-            fail_msg("%s", error.text);
+        run_fit(&shop, &fit, &calibration);
         assert_true(calibration.validation.mean_abs_error_g < 0.02);
         found[k] = calibration.model;
         assert_int_equal(cp_calibration_write(&fit, &calibration, &error), CP_OK);
@@ -265,10 +265,7 @@ static void bounds_of_the_pulse_count(void **state)
     cp_fit fit;
     cp_calibration calibration;
     cp_error error = {0};
-    if (cp_fit_load(shop.fit_path, &fit, &error) != CP_OK)
-        fail_msg("%s", error.text);
-    if (cp_calibration_run(&fit, &calibration, &error) != CP_OK)
-        fail_msg("%s", error.text);
+    run_fit(&shop, &fit, &calibration);
     double excess_1[CP_MARK_COUNT];
     cp_plausibility_excess(&fit.plausible, calibration.mark, excess_1);
     double outside_1 = fabs(excess_1[CP_MARK_CRUSH]);

@@ -11,12 +11,15 @@
 /* A little more than a car and its way in a step, so most boxes lie in one to four cells. */
 #define CELL_M 10.0
 #define FARTHEST_M 1e9
+#define NO_ENTRY UINT32_MAX
 
 static const char *const WHAT = "broad phase of contact detection";
 
 static int32_t cell_of(double coordinate_m)
 {
-    return (int32_t)floor(coordinate_m / CELL_M);
+    double cells = coordinate_m * (1.0 / CELL_M);
+    int32_t cell = (int32_t)cells; // towards 0
+    return cell - (cells < cell);
 }
 
 static bool is_usable(const cp_box *box)
@@ -33,61 +36,26 @@ static bool boxes_overlap(const cp_box *a, const cp_box *b)
            b->min_y_m <= a->max_y_m;
 }
 
-// List every box in every cell it touches.
-static cp_status list_entries(cp_broad_phase *phase, const cp_box *boxes, size_t count,
-                              size_t *entry_count, cp_error *error)
+static uint32_t bucket_of(int32_t cell_x, int32_t cell_y, size_t bucket_count)
 {
-    size_t used = 0;
-    for (size_t k = 0; k < count; k++) {
-        if (!is_usable(&boxes[k]))
-            continue;
-        int32_t x0 = cell_of(boxes[k].min_x_m), x1 = cell_of(boxes[k].max_x_m);
-        int32_t y0 = cell_of(boxes[k].min_y_m), y1 = cell_of(boxes[k].max_y_m);
-        size_t cells = (size_t)(x1 - x0 + 1) * (size_t)(y1 - y0 + 1);
-        cp_status status =
-            cp_array_reserve(phase->entry, phase->entry_capacity, used + cells, WHAT, error);
-        if (status != CP_OK)
-            return status;
-        for (int32_t x = x0; x <= x1; x++)
-            for (int32_t y = y0; y <= y1; y++)
-                phase->entry[used++] = (cp_grid_entry){x, y, (uint32_t)k};
-    }
-    *entry_count = used;
-    return CP_OK;
+    uint64_t mixed = (uint64_t)(uint32_t)cell_x * UINT64_C(0x9e3779b97f4a7c15) ^
+                     (uint64_t)(uint32_t)cell_y * UINT64_C(0xc2b2ae3d27d4eb4f);
+    return (uint32_t)((mixed ^ mixed >> 32) * UINT64_C(0xbf58476d1ce4e5b9) >> 32) &
+           (uint32_t)(bucket_count - 1);
 }
 
-static size_t bucket_of(const cp_grid_entry *entry, size_t bucket_count)
-{
-    uint64_t mixed = (uint64_t)(uint32_t)entry->cell_x * UINT64_C(0x9e3779b97f4a7c15) ^
-                     (uint64_t)(uint32_t)entry->cell_y * UINT64_C(0xc2b2ae3d27d4eb4f);
-    return (size_t)((mixed ^ mixed >> 32) * UINT64_C(0xbf58476d1ce4e5b9) >> 32) &
-           (bucket_count - 1);
-}
-
-// Counting sort of the entries by bucket; within a bucket they keep the order of the boxes.
-static cp_status sort_entries(cp_broad_phase *phase, size_t entry_count, size_t *bucket_count,
-                              cp_error *error)
+// Empty buckets: some two to four a box, so that a bucket seldom holds more than one cell.
+static cp_status empty_buckets(cp_broad_phase *phase, size_t count, size_t *bucket_count,
+                               cp_error *error)
 {
     size_t buckets = 64;
-    while (buckets < 2 * entry_count)
+    while (buckets < 2 * count)
         buckets *= 2;
     cp_status status =
-        cp_array_reserve(phase->sorted, phase->sorted_capacity, entry_count, WHAT, error);
-    if (status == CP_OK)
-        status =
-            cp_array_reserve(phase->bucket_begin, phase->bucket_capacity, buckets + 1, WHAT, error);
+        cp_array_reserve(phase->latest, phase->bucket_capacity, buckets, WHAT, error);
     if (status != CP_OK)
         return status;
-
-    // Count, turn counts into ends, then fill from the back, which leaves the beginnings.
-    memset(phase->bucket_begin, 0, (buckets + 1) * sizeof *phase->bucket_begin);
-    for (size_t k = 0; k < entry_count; k++)
-        phase->bucket_begin[bucket_of(&phase->entry[k], buckets)]++;
-    for (size_t k = 1; k <= buckets; k++)
-        phase->bucket_begin[k] += phase->bucket_begin[k - 1];
-    for (size_t k = entry_count; k-- > 0;)
-        phase->sorted[--phase->bucket_begin[bucket_of(&phase->entry[k], buckets)]] =
-            phase->entry[k];
+    memset(phase->latest, 0xff, buckets * sizeof *phase->latest);
     *bucket_count = buckets;
     return CP_OK;
 }
@@ -99,24 +67,44 @@ static bool is_home_cell(const cp_grid_entry *entry, const cp_box *a, const cp_b
            entry->cell_y == cell_of(fmax(a->min_y_m, b->min_y_m));
 }
 
-static cp_status pair_up(cp_broad_phase *phase, const cp_box *boxes, size_t begin, size_t end,
+// Pairs of a box with those that came into its cell before it.
+static cp_status pair_up(cp_broad_phase *phase, const cp_box *boxes, const cp_grid_entry *entry,
                          size_t *pair_count, cp_error *error)
 {
-    for (size_t i = begin; i < end; i++)
-        for (size_t j = i + 1; j < end; j++) {
-            const cp_grid_entry *one = &phase->sorted[i], *other = &phase->sorted[j];
-            if (one->cell_x != other->cell_x || one->cell_y != other->cell_y)
-                continue;
-            const cp_box *a = &boxes[one->box], *b = &boxes[other->box];
-            if (!boxes_overlap(a, b) || !is_home_cell(one, a, b))
-                continue;
-            cp_status status =
-                cp_array_reserve(phase->pair, phase->pair_capacity, *pair_count + 1, WHAT, error);
-            if (status != CP_OK)
-                return status;
-            phase->pair[(*pair_count)++] = (cp_box_pair){one->box, other->box};
-        }
+    const cp_box *box = &boxes[entry->box];
+    for (uint32_t k = entry->earlier; k != NO_ENTRY; k = phase->entry[k].earlier) {
+        const cp_grid_entry *other = &phase->entry[k];
+        const cp_box *other_box = &boxes[other->box];
+        if (other->cell_x != entry->cell_x || other->cell_y != entry->cell_y ||
+            !boxes_overlap(box, other_box) || !is_home_cell(entry, box, other_box))
+            continue;
+        cp_status status =
+            cp_array_reserve(phase->pair, phase->pair_capacity, *pair_count + 1, WHAT, error);
+        if (status != CP_OK)
+            return status;
+        phase->pair[(*pair_count)++] = (cp_box_pair){other->box, entry->box};
+    }
     return CP_OK;
+}
+
+// Into every cell it touches, where those that came before are met.
+static cp_status enter(cp_broad_phase *phase, const cp_box *boxes, size_t k, size_t bucket_count,
+                       size_t *entry_count, size_t *pair_count, cp_error *error)
+{
+    int32_t x0 = cell_of(boxes[k].min_x_m), x1 = cell_of(boxes[k].max_x_m);
+    int32_t y0 = cell_of(boxes[k].min_y_m), y1 = cell_of(boxes[k].max_y_m);
+    size_t cells = (size_t)(x1 - x0 + 1) * (size_t)(y1 - y0 + 1);
+    cp_status status =
+        cp_array_reserve(phase->entry, phase->entry_capacity, *entry_count + cells, WHAT, error);
+    for (int32_t x = x0; x <= x1 && status == CP_OK; x++)
+        for (int32_t y = y0; y <= y1 && status == CP_OK; y++) {
+            uint32_t *latest = &phase->latest[bucket_of(x, y, bucket_count)];
+            cp_grid_entry *entry = &phase->entry[*entry_count];
+            *entry = (cp_grid_entry){x, y, (uint32_t)k, *latest};
+            *latest = (uint32_t)(*entry_count)++;
+            status = pair_up(phase, boxes, entry, pair_count, error);
+        }
+    return status;
 }
 
 cp_status cp_broad_phase_pairs(cp_broad_phase *phase, const cp_box *boxes, size_t count,
@@ -124,12 +112,10 @@ cp_status cp_broad_phase_pairs(cp_broad_phase *phase, const cp_box *boxes, size_
 {
     size_t entry_count = 0, bucket_count = 0;
     *pair_count = 0;
-    cp_status status = list_entries(phase, boxes, count, &entry_count, error);
-    if (status == CP_OK)
-        status = sort_entries(phase, entry_count, &bucket_count, error);
-    for (size_t k = 0; k < bucket_count && status == CP_OK; k++)
-        status = pair_up(phase, boxes, phase->bucket_begin[k], phase->bucket_begin[k + 1],
-                         pair_count, error);
+    cp_status status = empty_buckets(phase, count, &bucket_count, error);
+    for (size_t k = 0; k < count && status == CP_OK; k++)
+        if (is_usable(&boxes[k]))
+            status = enter(phase, boxes, k, bucket_count, &entry_count, pair_count, error);
     *pairs = phase->pair;
     return status;
 }
@@ -137,8 +123,7 @@ cp_status cp_broad_phase_pairs(cp_broad_phase *phase, const cp_box *boxes, size_
 void cp_broad_phase_destroy(cp_broad_phase *phase)
 {
     free(phase->entry);
-    free(phase->sorted);
-    free(phase->bucket_begin);
+    free(phase->latest);
     free(phase->pair);
     *phase = (cp_broad_phase){0};
 }

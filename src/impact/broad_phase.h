@@ -25,15 +25,14 @@ typedef struct cp_grid_entry {
     int32_t cell_x;
     int32_t cell_y;
     uint32_t box;
+    uint32_t earlier; /* the entry before it in its bucket; UINT32_MAX: none */
 } cp_grid_entry;
 
 /* Working memory, kept from call to call. Zero-initialise, destroy. */
 typedef struct cp_broad_phase {
     cp_grid_entry *entry; /* in the order of the boxes */
     size_t entry_capacity;
-    cp_grid_entry *sorted; /* the same by bucket */
-    size_t sorted_capacity;
-    uint32_t *bucket_begin;
+    uint32_t *latest; /* of every bucket, the entry that came last; UINT32_MAX: none */
     size_t bucket_capacity;
     cp_box_pair *pair;
     size_t pair_capacity;

@@ -7,6 +7,7 @@
 #include "impact/confirmation.h"
 #include "impact/footprint.h"
 #include "impact/pair_set.h"
+#include "impact/step_box.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -29,6 +30,9 @@ struct cp_detector {
     cp_broad_phase broad_phase;
     cp_box *box; /* one a vehicle: where its rectangle is during the step */
     size_t box_capacity;
+    cp_kept_heading *heading; /* by place among the motions, of the last step */
+    size_t heading_count;
+    size_t heading_capacity;
     cp_impact *impact; /* of this step */
     size_t impact_capacity;
     size_t impact_count;
@@ -49,57 +53,9 @@ void cp_detector_destroy(cp_detector *detector)
     cp_pair_set_destroy(&detector->touching_now);
     cp_broad_phase_destroy(&detector->broad_phase);
     free(detector->box);
+    free(detector->heading);
     free(detector->impact);
     free(detector);
-}
-
-// Make the box hold the rectangle of a state with that heading.
-static void enclose(cp_box *box, const cp_vehicle_state *state, cp_vec2 heading, double margin_m)
-{
-    double half_length_m = 0.5 * state->length_m, half_width_m = 0.5 * state->width_m;
-    double x_m = state->front_x_m - heading.x * half_length_m;
-    double y_m = state->front_y_m - heading.y * half_length_m;
-    double along = fabs(heading.x), across = fabs(heading.y);
-    double reach_x_m = along * half_length_m + across * half_width_m + margin_m;
-    double reach_y_m = across * half_length_m + along * half_width_m + margin_m;
-    box->min_x_m = fmin(box->min_x_m, x_m - reach_x_m);
-    box->min_y_m = fmin(box->min_y_m, y_m - reach_y_m);
-    box->max_x_m = fmax(box->max_x_m, x_m + reach_x_m);
-    box->max_y_m = fmax(box->max_y_m, y_m + reach_y_m);
-}
-
-static bool is_finite_state(const cp_vehicle_state *state)
-{
-    return isfinite(state->front_x_m) && isfinite(state->front_y_m) && isfinite(state->yaw_rad);
-}
-
-// Box of the way through the step, and half of what parts two that touched. Between two headings a
-// corner swings out of the straight line by no more than its lever times 1 - cos of half the turn.
-static cp_box box_of(const cp_vehicle_motion *motion, double step_length_s)
-{
-    cp_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    const cp_vehicle_state *before = &motion->before, *after = &motion->after;
-    if (!is_finite_state(after))
-        return box;
-    cp_vec2 heading = cp_vec2_heading(after->yaw_rad);
-    if (cp_motion_is_jump(motion, step_length_s)) {
-        enclose(&box, after, heading, 0.5 * PARTED_M);
-        return box;
-    }
-    if (!is_finite_state(before))
-        return box;
-
-    // Most drive straight on.
-    double margin_m = 0.5 * PARTED_M;
-    cp_vec2 heading_before = heading;
-    if (before->yaw_rad != after->yaw_rad) {
-        double half_turn_rad = 0.5 * cp_wrap_angle(after->yaw_rad - before->yaw_rad);
-        margin_m += hypot(after->length_m, after->width_m) * (1.0 - cos(half_turn_rad));
-        heading_before = cp_vec2_heading(before->yaw_rad);
-    }
-    enclose(&box, before, heading_before, margin_m);
-    enclose(&box, after, heading, margin_m);
-    return box;
 }
 
 // Separation at the end of the step.
@@ -346,18 +302,35 @@ static cp_status examine(cp_detector *detector, const cp_detector_scene *scene, 
     return status == CP_OK ? report(detector, scene, &impact, error) : status;
 }
 
+// Boxes of all vehicles, half of what parts two that touched wider on every side.
+static cp_status enclose_vehicles(cp_detector *detector, const cp_detector_scene *scene,
+                                  cp_error *error)
+{
+    const char *what = "boxes of vehicles";
+    cp_status status =
+        cp_array_reserve(detector->box, detector->box_capacity, scene->count, what, error);
+    if (status == CP_OK)
+        status = cp_array_reserve(detector->heading, detector->heading_capacity, scene->count, what,
+                                  error);
+    if (status != CP_OK)
+        return status;
+    for (; detector->heading_count < scene->count; detector->heading_count++)
+        detector->heading[detector->heading_count] = (cp_kept_heading){.unit = {1.0, 0.0}};
+    for (size_t k = 0; k < scene->count; k++)
+        detector->box[k] = cp_step_box(&scene->motions[k], scene->step_length_s, 0.5 * PARTED_M,
+                                       &detector->heading[k]);
+    return CP_OK;
+}
+
 cp_status cp_detector_scan(cp_detector *detector, const cp_detector_scene *scene,
                            const cp_impact **impacts, size_t *count, cp_error *error)
 {
     *impacts = NULL;
     *count = 0;
     detector->impact_count = 0;
-    cp_status status = cp_array_reserve(detector->box, detector->box_capacity, scene->count,
-                                        "boxes of vehicles", error);
+    cp_status status = enclose_vehicles(detector, scene, error);
     if (status != CP_OK)
         return status;
-    for (size_t k = 0; k < scene->count; k++)
-        detector->box[k] = box_of(&scene->motions[k], scene->step_length_s);
 
     // Near pairs first, then each of them closely.
     const cp_box_pair *pair;

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact/footprint.h"
 
-#define SIDEWAYS_JUMP_M_S 8.0
-
 cp_rectangle cp_footprint_of_state(const cp_vehicle_state *state)
 {
     cp_vec2 front_m = {state->front_x_m, state->front_y_m};
@@ -86,7 +84,7 @@ bool cp_motion_is_jump(const cp_vehicle_motion *motion, double step_length_s)
         yaw_rad += 0.5 * cp_wrap_angle(motion->after.yaw_rad - yaw_rad);
     cp_vec2 heading = cp_vec2_heading(yaw_rad);
     double sideways_m = fabs(cp_vec2_cross(heading, chord_of(motion)));
-    return sideways_m > SIDEWAYS_JUMP_M_S * step_length_s;
+    return sideways_m > CP_JUMP_SIDEWAYS_M_S * step_length_s;
 }
 
 cp_vec2 cp_motion_front_velocity(const cp_vehicle_motion *motion, double step_length_s,

@@ -23,8 +23,11 @@ cp_vehicle_state cp_motion_at(const cp_vehicle_motion *motion, double step_lengt
 cp_vec2 cp_motion_front_velocity(const cp_vehicle_motion *motion, double step_length_s,
                                  double fraction);
 
+/* Sideways faster than that nobody drives: turning cars reach 5 m/s. */
+#define CP_JUMP_SIDEWAYS_M_S 8.0
+
 /* True when the vehicle was set down where it is rather than driven there: inserted, teleported,
- * or moved sideways at more than 8 m/s (SUMO's instant lane change; turning cars reach 5). */
+ * or moved sideways faster than CP_JUMP_SIDEWAYS_M_S (SUMO's instant lane change). */
 bool cp_motion_is_jump(const cp_vehicle_motion *motion, double step_length_s);
 
 #endif

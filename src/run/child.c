@@ -2,6 +2,7 @@
 #include "run/child.h"
 
 #include "core/progress.h"
+#include "run/child_environment.h"
 #include "run/worker.h"
 
 #include <errno.h>
@@ -55,9 +56,12 @@ static int spawn(const char *program, const char *const *arguments, cp_child *ch
 {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
-    int failed = posix_spawn_file_actions_init(&actions);
-    if (failed != 0)
+    char **environment = cp_child_environment(environ);
+    int failed = environment != NULL ? posix_spawn_file_actions_init(&actions) : ENOMEM;
+    if (failed != 0) {
+        cp_child_environment_free(environment);
         return failed;
+    }
     failed = posix_spawnattr_init(&attributes);
     if (failed == 0) {
         failed = set_descriptors(&actions, child, report);
@@ -65,10 +69,11 @@ static int spawn(const char *program, const char *const *arguments, cp_child *ch
             failed = set_attributes(&attributes);
         if (failed == 0) // posix_spawn takes the words without changing them
             failed = posix_spawn(&child->pid, program, &actions, &attributes,
-                                 (char *const *)arguments, environ);
+                                 (char *const *)arguments, environment);
         posix_spawnattr_destroy(&attributes);
     }
     posix_spawn_file_actions_destroy(&actions);
+    cp_child_environment_free(environment);
     return failed;
 }
 

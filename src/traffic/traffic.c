@@ -22,7 +22,7 @@ struct cp_traffic {
     double time_s;
     cp_vehicle_motion *motions; /* of the last step */
     size_t count;
-    cp_vehicle_motion *previous; /* of the step before */
+    cp_vehicle_motion *previous; /* those of before vehicles last came or went */
     size_t previous_count;
     size_t capacity;       /* of both */
     cp_recent_rows row_of; /* by vehicle number: row in motions */
@@ -119,32 +119,66 @@ static bool has_jumped(const cp_vehicle_state *before, const cp_vehicle_state *a
     return chord_m > 1.5 * fastest_m_s * step_length_s + lane_width_m;
 }
 
-// Way of a vehicle in the step just made, by the ballistic update; previous is the step before.
-static double way_m(const cp_traffic *traffic, const cp_vehicle_state *after)
+// From a state of the last step, NULL without one, to one of this.
+static void move_on(const cp_traffic *traffic, const cp_vehicle_state *before,
+                    const cp_vehicle_state *after, cp_vehicle_motion *motion)
 {
-    uint32_t row = row_of(traffic, after->vehicle);
-    if (row == CP_NO_ROW)
-        return 0.0;
-    double mean_m_s = 0.5 * (traffic->previous[row].after.speed_m_s + after->speed_m_s);
-    return mean_m_s * traffic->step_length_s;
+    // Way of the step by the ballistic update.
+    cp_vehicle_state now = *after;
+    double dt_s = traffic->step_length_s;
+    double way_m = before != NULL ? 0.5 * (before->speed_m_s + after->speed_m_s) * dt_s : 0.0;
+    cp_lateral_overlay_apply(traffic->overlays, &now, way_m);
+    if (before == NULL || has_jumped(before, &now, dt_s)) {
+        *motion = (cp_vehicle_motion){.after = now};
+        return;
+    }
+    now.acceleration_m_s2 = (now.speed_m_s - before->speed_m_s) / dt_s;
+    motion->yaw_rate_rad_s = cp_wrap_angle(now.yaw_rad - before->yaw_rad) / dt_s;
+    motion->was_present = true;
+    motion->before = *before;
+    motion->after = now;
 }
 
-static cp_vehicle_motion motion_to(const cp_traffic *traffic, const cp_vehicle_state *after)
+// Whether the same vehicles are there as after the last step, in the same rows.
+static bool are_same(const cp_traffic *traffic, const cp_vehicle_state *states, size_t count)
 {
-    cp_vehicle_motion motion = {.after = *after};
-    uint32_t row = row_of(traffic, after->vehicle);
-    if (row == CP_NO_ROW)
-        return motion;
-    const cp_vehicle_state *before = &traffic->previous[row].after;
-    if (has_jumped(before, after, traffic->step_length_s))
-        return motion;
-    motion.before = *before;
-    motion.after.acceleration_m_s2 =
-        (after->speed_m_s - before->speed_m_s) / traffic->step_length_s;
-    motion.was_present = true;
-    motion.yaw_rate_rad_s =
-        cp_wrap_angle(after->yaw_rad - before->yaw_rad) / traffic->step_length_s;
-    return motion;
+    if (count != traffic->count)
+        return false;
+    for (size_t k = 0; k < count; k++)
+        if (states[k].vehicle != traffic->motions[k].after.vehicle)
+            return false;
+    return true;
+}
+
+// Somebody came or went: motions into the other array, by where they were in this one.
+static cp_status move_on_anew(cp_traffic *traffic, const cp_vehicle_state *states, size_t count,
+                              cp_error *error)
+{
+    cp_status status = reserve_motions(traffic, count, error);
+    if (status != CP_OK)
+        return status;
+    cp_vehicle_motion *spare = traffic->previous;
+    traffic->previous = traffic->motions;
+    traffic->previous_count = traffic->count;
+    traffic->motions = spare;
+    traffic->count = count;
+    for (size_t k = 0; k < count; k++) {
+        uint32_t row = row_of(traffic, states[k].vehicle);
+        move_on(traffic, row != CP_NO_ROW ? &traffic->previous[row].after : NULL, &states[k],
+                &traffic->motions[k]);
+    }
+    return number_rows(traffic, error);
+}
+
+// Motions of the step that led to these states.
+static cp_status take_states(cp_traffic *traffic, const cp_vehicle_state *states, size_t count,
+                             cp_error *error)
+{
+    if (!are_same(traffic, states, count))
+        return move_on_anew(traffic, states, count, error);
+    for (size_t k = 0; k < count; k++)
+        move_on(traffic, &traffic->motions[k].after, &states[k], &traffic->motions[k]);
+    return CP_OK;
 }
 
 // ---- crashed vehicles that stay ------------------------------------------------------------
@@ -239,25 +273,11 @@ cp_status cp_traffic_step(cp_traffic *traffic, cp_error *error)
     cp_status status = stop_held(traffic, error);
     if (status == CP_OK)
         status = traffic->source->step(&states, &count, error);
+    if (status == CP_OK)
+        status = take_states(traffic, states, count, error);
     if (status != CP_OK)
         return status;
-    if ((status = reserve_motions(traffic, count, error)) != CP_OK)
-        return status;
-
-    // What was now is before; row_of still points into it.
-    cp_vehicle_motion *spare = traffic->previous;
-    traffic->previous = traffic->motions;
-    traffic->previous_count = traffic->count;
-    traffic->motions = spare;
-    traffic->count = count;
-    for (size_t k = 0; k < count; k++) {
-        cp_vehicle_state state = states[k];
-        cp_lateral_overlay_apply(traffic->overlays, &state, way_m(traffic, &state));
-        traffic->motions[k] = motion_to(traffic, &state);
-    }
     cp_lateral_overlays_prune(traffic->overlays);
-    if ((status = number_rows(traffic, error)) != CP_OK)
-        return status;
     traffic->time_s = traffic->source->time_s();
     if ((status = keep_held(traffic, error)) != CP_OK)
         return status;

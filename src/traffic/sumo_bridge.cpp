@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
-#include <malloc.h>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -130,11 +129,10 @@ struct Bridge {
     Names types, lanes, lights, collision_types;
     std::vector<Size> size_of_type;
     std::vector<cp_vehicle_state> states;
-    std::vector<uint32_t> departed, gone, present, present_before;
+    std::vector<uint32_t> departed;
     std::vector<Driving> under_way;   // departed and not arrived, by id
     std::vector<std::string> leaving; // ids of those who went in this step
     bool reads_places = true;
-    std::vector<uint8_t> seen_in_step; // by vehicle number: last bits of the number of the step
     uint64_t step = 0;
     std::vector<cp_sumo_collision> collisions;
     std::vector<SpeedCommand> speed_commands; // since the last step
@@ -316,7 +314,6 @@ void start(const char *sumocfg, uint64_t seed, double step_length_s, const char 
         streams = lanes; // not more: each is 5 kB
         words = command(sumocfg, seed, step_length_s, options, option_count, streams);
         close_quietly();
-        malloc_trim(0); // else the second network lies around holes of the first: 2 MB of a town
         libsumo::Simulation::start(words);
     }
     for (const std::string &word : words)
@@ -439,14 +436,14 @@ void check_account()
 {
     const std::vector<std::string> listed = libsumo::Vehicle::getIDList();
     const bool is_right =
-        std::equal(listed.begin(), listed.end(), bridge->present.begin(), bridge->present.end(),
-                   [](const std::string &id, uint32_t vehicle) {
-                       return id == bridge->vehicles.text(vehicle);
+        std::equal(listed.begin(), listed.end(), bridge->states.begin(), bridge->states.end(),
+                   [](const std::string &id, const cp_vehicle_state &state) {
+                       return id == bridge->vehicles.text(state.vehicle);
                    });
     if (!is_right)
         throw std::logic_error("there are " + std::to_string(listed.size()) +
                                " vehicles, but by departures and arrivals " +
-                               std::to_string(bridge->present.size()));
+                               std::to_string(bridge->states.size()));
 }
 
 void step()
@@ -456,33 +453,25 @@ void step()
     bridge->speed_commands.clear();
     bridge->step++;
     keep_account();
-    bridge->present_before.swap(bridge->present);
-    bridge->present.clear();
-    bridge->states.clear();
-    const uint8_t this_step = static_cast<uint8_t>(bridge->step);
-    size_t kept = 0;
-    for (Driving &driving : bridge->under_way) {
-        cp_vehicle_state state;
-        const Where where = read_vehicle(&driving, &state);
-        if (where == Where::GONE)
-            bridge->leaving.push_back(*driving.id);
-        else
-            bridge->under_way[kept++] = driving;
-        if (where != Where::ON_THE_ROAD)
+    std::vector<Driving> &all = bridge->under_way;
+    bridge->states.resize(all.size());
+    size_t kept = 0, read = 0;
+    for (size_t k = 0; k < all.size(); k++) {
+        const Where where = read_vehicle(&all[k], &bridge->states[read]);
+        if (where == Where::GONE) {
+            bridge->leaving.push_back(*all[k].id);
             continue;
-        bridge->states.push_back(state);
-        bridge->present.push_back(state.vehicle);
-        if (state.vehicle >= bridge->seen_in_step.size())
-            bridge->seen_in_step.resize(static_cast<size_t>(state.vehicle) * 9 / 8 + 64, 0);
-        bridge->seen_in_step[state.vehicle] = this_step;
+        }
+        if (where == Where::ON_THE_ROAD)
+            read++;
+        if (kept != k)
+            all[kept] = all[k];
+        kept++;
     }
-    bridge->under_way.resize(kept, Driving{});
+    all.resize(kept, Driving{});
+    bridge->states.resize(read);
     if (bridge->step % steps_between_checks == 1)
         check_account();
-    bridge->gone.clear();
-    for (uint32_t vehicle : bridge->present_before)
-        if (bridge->seen_in_step[vehicle] != this_step)
-            bridge->gone.push_back(vehicle);
 }
 
 // Junction of a lane inside one (SUMO's name ":junction_link_lane"); "" for a lane of an edge.
@@ -812,18 +801,6 @@ cp_status sumo_bridge_departed(const uint32_t **vehicles, size_t *count, cp_erro
         return status;
     *vehicles = bridge->departed.data();
     *count = bridge->departed.size();
-    return CP_OK;
-}
-
-cp_status sumo_bridge_gone(const uint32_t **vehicles, size_t *count, cp_error *error)
-{
-    *vehicles = nullptr;
-    *count = 0;
-    cp_status status = need_running(error);
-    if (status != CP_OK)
-        return status;
-    *vehicles = bridge->gone.data();
-    *count = bridge->gone.size();
     return CP_OK;
 }
 

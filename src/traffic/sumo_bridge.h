@@ -143,9 +143,6 @@ CP_MUST_CHECK cp_status sumo_bridge_type(const char *type_id, cp_sumo_type *type
 /* Vehicles inserted in the last step. Valid until the next step. */
 CP_MUST_CHECK cp_status sumo_bridge_departed(const uint32_t **vehicles, size_t *count,
                                              cp_error *error);
-/* Vehicles that were on the road after the step before and are not after the last one (arrived,
- * removed or teleporting). Valid until the next step. */
-CP_MUST_CHECK cp_status sumo_bridge_gone(const uint32_t **vehicles, size_t *count, cp_error *error);
 
 /* Commands. A vehicle that is gone is CP_TRAFFIC_FAILED. */
 CP_MUST_CHECK cp_status sumo_bridge_remove(uint32_t vehicle, cp_error *error);

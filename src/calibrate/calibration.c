@@ -3,7 +3,9 @@
 
 static bool wanted(const cp_fit *fit, cp_cross_kind kind)
 {
-    return kind == CP_CROSS_FOLDS ? fit->folds > 1 : fit->leave_out[kind];
+    return kind == CP_CROSS_FOLDS        ? fit->folds > 1
+           : kind == CP_CROSS_NEIGHBOURS ? fit->neighbour_folds > 1
+                                         : fit->leave_out[kind];
 }
 
 cp_status cp_calibration_run(const cp_fit *fit, cp_calibration *calibration, cp_error *error)

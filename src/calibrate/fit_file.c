@@ -62,6 +62,7 @@ typedef struct yaml_fit {
     char *soft_g;
     char *prior_g;
     char *folds;
+    char *neighbour_folds;
     char **leave_out;
     unsigned leave_out_count;
     yaml_plausible *plausible;
@@ -129,6 +130,7 @@ static const cyaml_schema_field_t FIT_FIELDS[] = {
     OPTIONAL_TEXT(soft_g, yaml_fit),
     OPTIONAL_TEXT(prior_g, yaml_fit),
     OPTIONAL_TEXT(folds, yaml_fit),
+    OPTIONAL_TEXT(neighbour_folds, yaml_fit),
     CYAML_FIELD_SEQUENCE("leave_out", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit, leave_out,
                          &WORD_VALUE, 1, 3),
     CYAML_FIELD_MAPPING_PTR("plausible", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit,
@@ -176,7 +178,10 @@ static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp
         status = read_count(file, "slope_evaluations", yaml->slope_evaluations, 0, 1e7, 0,
                             &fit->slope_evaluations, error);
     if (status == CP_OK)
-        status = read_count(file, "folds", yaml->folds, 0, 50, 0, &fit->folds, error);
+        status = read_count(file, "folds", yaml->folds, 0, CP_FOLDS_MAX, 0, &fit->folds, error);
+    if (status == CP_OK)
+        status = read_count(file, "neighbour_folds", yaml->neighbour_folds, 0, CP_FOLDS_MAX, 0,
+                            &fit->neighbour_folds, error);
     if (status == CP_OK)
         status = read_count(file, "threads", yaml->threads, 1, 64, 1, &threads, error);
     if (status == CP_OK)

@@ -148,11 +148,11 @@ static void write_cases(FILE *file, const cp_fit *fit, const cp_calibration *cal
     for (size_t c = 0; c < calibration->cross_count; c++) {
         char title[80];
         cp_cross_title(&calibration->cross[c], title);
-        fprintf(file, " held out: %s, g |", title);
+        fprintf(file, " part | held out: %s, g |", title);
     }
     fprintf(file, "\n|---:|---:|---:|---:|---:|---:|");
     for (size_t c = 0; c < calibration->cross_count; c++)
-        fprintf(file, "---:|");
+        fprintf(file, "---:|---:|");
     fprintf(file, "\n");
     for (size_t k = 0; k < fit->reference.count; k++) {
         const cp_reference_case *row = &fit->reference.cases[k];
@@ -160,7 +160,8 @@ static void write_cases(FILE *file, const cp_fit *fit, const cp_calibration *cal
                 row->angle_deg, row->olc_g, calibration->work.olc_g[k],
                 calibration->work.olc_g[k] - row->olc_g);
         for (size_t c = 0; c < calibration->cross_count; c++)
-            fprintf(file, " %.2f |", calibration->cross[c].held_out_g[k]);
+            fprintf(file, " %zu | %.2f |", calibration->cross[c].part[k] + 1,
+                    calibration->cross[c].held_out_g[k]);
         fprintf(file, "\n");
     }
 }

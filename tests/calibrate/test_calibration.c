@@ -84,6 +84,18 @@ static void close_workshop(const workshop *shop)
     assert_int_equal(rmdir(shop->folder), 0);
 }
 
+static void read_report(const workshop *shop, char *report, size_t size)
+{
+    char path[256];
+    snprintf(path, sizeof path, "%s/twin.yaml.fit.md", shop->folder);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    size_t length = fread(report, 1, size - 1, file);
+    assert_true(length > 0 && length < size - 1);
+    report[length] = '\0';
+    assert_int_equal(fclose(file), 0);
+}
+
 static void run_fit(const workshop *shop, cp_fit *fit, cp_calibration *calibration)
 {
     cp_error error = {0};
@@ -152,7 +164,7 @@ static void slopes_lead_to_the_twin(void **state)
     char lines[768];
     snprintf(lines, sizeof lines,
              "population: 8\ngenerations: 1\nstarts: 2\nslope_evaluations: 60\n"
-             "local_evaluations: 0\nleave_out: [speed]\n%s",
+             "local_evaluations: 0\nleave_out: [speed]\nneighbour_folds: 2\n%s",
              TWO_UNKNOWNS);
     workshop shop = open_workshop(lines);
     cp_fit fit;
@@ -161,11 +173,22 @@ static void slopes_lead_to_the_twin(void **state)
     run_fit(&shop, &fit, &calibration);
     assert_true(calibration.validation.mean_abs_error_g < 0.02);
     assert_near(calibration.model.longitudinal_collapse_begin_kn, 110.0, 2.0);
-    assert_int_equal(calibration.cross_count, 1);
+    assert_int_equal(calibration.cross_count, 2);
     assert_int_equal(calibration.cross[0].kind, CP_CROSS_SPEED);
     assert_int_equal(calibration.cross[0].part_count, 2);
     assert_true(calibration.cross[0].validation.mean_abs_error_g < 1.0);
+    assert_int_equal(calibration.cross[1].kind, CP_CROSS_NEIGHBOURS);
+    assert_int_equal(calibration.cross[1].part_count, 2);
+    assert_true(calibration.cross[1].validation.mean_abs_error_g < 0.1);
+
+    // The report says what was held out with what.
     assert_int_equal(cp_calibration_write(&fit, &calibration, &error), CP_OK);
+    char report[16384];
+    read_report(&shop, report, sizeof report);
+    assert_non_null(strstr(report, "| part | held out: One speed left out at a time, g |"
+                                   " part | held out: 2-fold cross-validation, neighbours apart, "
+                                   "g |"));
+    assert_non_null(strstr(report, "\n| 35 | 0 | 0 |"));
     cp_calibration_destroy(&calibration);
     cp_fit_destroy(&fit);
     close_workshop(&shop);
@@ -191,12 +214,8 @@ static void drawn_starts_lead_to_the_twin(void **state)
         assert_true(calibration.validation.mean_abs_error_g < 0.02);
         found[k] = calibration.model;
         assert_int_equal(cp_calibration_write(&fit, &calibration, &error), CP_OK);
-        char path[256], report[16384] = "";
-        snprintf(path, sizeof path, "%s/twin.yaml.fit.md", shop.folder);
-        FILE *file = fopen(path, "r");
-        assert_non_null(file);
-        assert_true(fread(report, 1, sizeof report - 1, file) > 0);
-        assert_int_equal(fclose(file), 0);
+        char report[16384];
+        read_report(&shop, report, sizeof report);
         assert_non_null(strstr(report, "5 starts, the base and vehicles drawn around it"));
         cp_calibration_destroy(&calibration);
         cp_fit_destroy(&fit);

@@ -97,8 +97,9 @@ static bool is_within_reach(const cp_lookout *lookout, const cp_vehicle_motion *
 {
     double reach_m = lookout->settings.horizon_s * (own->after.speed_m_s + other->after.speed_m_s) +
                      own->after.length_m + other->after.length_m;
-    return hypot(other->after.front_x_m - own->after.front_x_m,
-                 other->after.front_y_m - own->after.front_y_m) <= reach_m;
+    double apart_x_m = other->after.front_x_m - own->after.front_x_m;
+    double apart_y_m = other->after.front_y_m - own->after.front_y_m;
+    return apart_x_m * apart_x_m + apart_y_m * apart_y_m <= reach_m * reach_m;
 }
 
 static bool is_detectable(const cp_lookout *lookout, uint32_t own, uint32_t target)

@@ -32,8 +32,8 @@ static cp_status reserve(cp_neighbourhood *neighbourhood, size_t count, cp_error
         buckets *= 2;
     cp_neighbourhood_clear(neighbourhood);
     neighbourhood->first = malloc(buckets * sizeof *neighbourhood->first);
-    neighbourhood->next = malloc(buckets / 2 * sizeof *neighbourhood->next);
-    if (!neighbourhood->first || !neighbourhood->next) {
+    neighbourhood->neighbour = malloc(buckets / 2 * sizeof *neighbourhood->neighbour);
+    if (!neighbourhood->first || !neighbourhood->neighbour) {
         cp_neighbourhood_clear(neighbourhood);
         return cp_fail_memory(error, "neighbourhood");
     }
@@ -56,7 +56,8 @@ cp_status cp_neighbourhood_fill(cp_neighbourhood *neighbourhood, double cell_m,
         const cp_vehicle_state *state = &motions[k].after;
         size_t bucket =
             bucket_of(neighbourhood, cell_of(neighbourhood, state->front_x_m, state->front_y_m));
-        neighbourhood->next[k] = neighbourhood->first[bucket];
+        neighbourhood->neighbour[k] =
+            (cp_neighbour){state->front_x_m, state->front_y_m, neighbourhood->first[bucket]};
         neighbourhood->first[bucket] = (uint32_t)k;
     }
     return CP_OK;
@@ -65,8 +66,14 @@ cp_status cp_neighbourhood_fill(cp_neighbourhood *neighbourhood, double cell_m,
 void cp_neighbourhood_clear(cp_neighbourhood *neighbourhood)
 {
     free(neighbourhood->first);
-    free(neighbourhood->next);
+    free(neighbourhood->neighbour);
     *neighbourhood = (cp_neighbourhood){0};
+}
+
+static bool is_in(const cp_neighbourhood *neighbourhood, cell at, const cp_neighbour *neighbour)
+{
+    cell own = cell_of(neighbourhood, neighbour->x_m, neighbour->y_m);
+    return own.x == at.x && own.y == at.y;
 }
 
 void cp_neighbourhood_visit(const cp_neighbourhood *neighbourhood, double x_m, double y_m,
@@ -76,18 +83,19 @@ void cp_neighbourhood_visit(const cp_neighbourhood *neighbourhood, double x_m, d
     if (neighbourhood->buckets == 0)
         return;
     cell centre = cell_of(neighbourhood, x_m, y_m);
+    double farthest_m2 = neighbourhood->cell_m * neighbourhood->cell_m;
     for (int64_t dx = -1; dx <= 1; dx++) {
         for (int64_t dy = -1; dy <= 1; dy++) {
             cell at = {centre.x + dx, centre.y + dy};
             uint32_t row = neighbourhood->first[bucket_of(neighbourhood, at)];
-            for (; row != SUMO_BRIDGE_NONE; row = neighbourhood->next[row]) {
+            while (row != SUMO_BRIDGE_NONE) {
+                const cp_neighbour *own = &neighbourhood->neighbour[row];
+                double apart_x_m = own->x_m - x_m, apart_y_m = own->y_m - y_m;
                 // Two cells can share a bucket: the cell is compared, so that none comes twice.
-                const cp_vehicle_motion *motion = &neighbourhood->motions[row];
-                double x = motion->after.front_x_m, y = motion->after.front_y_m;
-                cell own = cell_of(neighbourhood, x, y);
-                if (own.x == at.x && own.y == at.y &&
-                    hypot(x - x_m, y - y_m) <= neighbourhood->cell_m)
-                    visit(context, motion);
+                if (apart_x_m * apart_x_m + apart_y_m * apart_y_m <= farthest_m2 &&
+                    is_in(neighbourhood, at, own))
+                    visit(context, &neighbourhood->motions[row]);
+                row = own->next;
             }
         }
     }

@@ -4,15 +4,21 @@
 
 #include "traffic/traffic.h"
 
+/* Where a vehicle's front is. */
+typedef struct cp_neighbour {
+    double x_m, y_m;
+    uint32_t next; /* row of the next vehicle of the bucket */
+} cp_neighbour;
+
 /* Who is near whom: vehicles sorted into square cells by front position, so that a look round costs
  * what stands there and not what drives in the whole network. */
 typedef struct cp_neighbourhood {
     double cell_m;
     const cp_vehicle_motion *motions; /* borrowed until the next fill */
     uint32_t *first;                  /* by bucket: row of the first vehicle, or SUMO_BRIDGE_NONE */
-    uint32_t *next;                   /* by row: next vehicle of the bucket */
+    cp_neighbour *neighbour;          /* by row */
     size_t buckets;                   /* power of two */
-    size_t capacity;                  /* of next */
+    size_t capacity;                  /* of neighbour */
 } cp_neighbourhood;
 
 /* Zero-initialise, fill in every step, clear at the end. cell_m > 0 is the largest distance looked

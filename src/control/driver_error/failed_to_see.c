@@ -115,10 +115,12 @@ static cp_status meet(failed_to_see *self, const cp_control_context *context, ui
 
 // ---- errors at work ------------------------------------------------------------------------
 
-static double distance_m(const cp_vehicle_motion *one, const cp_vehicle_motion *other)
+// Front to front.
+static bool is_nearer(const cp_vehicle_motion *one, const cp_vehicle_motion *other, double than_m)
 {
-    return hypot(other->after.front_x_m - one->after.front_x_m,
-                 other->after.front_y_m - one->after.front_y_m);
+    double x_m = other->after.front_x_m - one->after.front_x_m;
+    double y_m = other->after.front_y_m - one->after.front_y_m;
+    return x_m * x_m + y_m * y_m < than_m * than_m;
 }
 
 /* A look of one driver for those he overlooks. */
@@ -144,7 +146,7 @@ static void look_for_error(void *context, uint32_t foe_vehicle)
     failed_to_see *self = looking->self;
     const cp_vehicle_motion *foe = cp_traffic_motion_of(self->traffic, foe_vehicle);
     if (looking->status != CP_OK || !foe ||
-        distance_m(looking->own, foe) >= NEAR_M + AHEAD_S * foe->after.speed_m_s)
+        !is_nearer(looking->own, foe, NEAR_M + AHEAD_S * foe->after.speed_m_s))
         return;
     if (self->encounter_count == self->encounter_capacity) {
         size_t capacity = self->encounter_capacity == 0 ? 64 : 2 * self->encounter_capacity;
@@ -215,7 +217,7 @@ static void look_at(void *context, uint32_t foe_vehicle)
 {
     nearby *found = context;
     const cp_vehicle_motion *foe = cp_traffic_motion_of(found->traffic, foe_vehicle);
-    found->is_near |= foe && distance_m(found->own, foe) < NEAR_M;
+    found->is_near |= foe && is_nearer(found->own, foe, NEAR_M);
 }
 
 // At fault now: somebody overlooked is right before or beside the car.

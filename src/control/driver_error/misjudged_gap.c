@@ -130,12 +130,13 @@ typedef struct look {
 static bool is_candidate(const look *looking, const cp_vehicle_state *foe)
 {
     const double *parameter = looking->context->parameter;
+    if (foe->speed_m_s < 3.0)
+        return false;
     cp_vec2 way = {looking->ego->front_x_m - foe->front_x_m,
                    looking->ego->front_y_m - foe->front_y_m};
     double distance_m = cp_vec2_length(way);
-    double arrival_s = distance_m / fmax(foe->speed_m_s, 0.1);
-    if (foe->speed_m_s < 3.0 || arrival_s < parameter[GAP_MIN_S] ||
-        arrival_s >= parameter[GAP_MAX_S])
+    double arrival_s = distance_m / foe->speed_m_s;
+    if (arrival_s < parameter[GAP_MIN_S] || arrival_s >= parameter[GAP_MAX_S])
         return false;
     double across_rad = fabs(cp_wrap_angle(foe->yaw_rad - looking->ego->yaw_rad));
     double aim_1 = cp_vec2_dot(way, cp_vec2_heading(foe->yaw_rad)) / distance_m;

@@ -107,8 +107,7 @@ typedef struct aeb {
     cp_brake brake; /* but for its start */
     double delay_s; /* from the threat to the first deceleration */
     double release_ttc_s;
-    aeb_car *cars; /* by vehicle number */
-    size_t numbers;
+    cp_vehicle_table cars; /* an aeb_car of each */
     size_t activations;
     size_t of_class[CP_TARGET_CLASSES];
     size_t false_activations;
@@ -139,6 +138,7 @@ static cp_status create(const cp_control_context *context, void **state, cp_erro
     };
     created->traffic = context->traffic;
     created->lookout = cp_lookout_create(&settings, context->traffic);
+    created->cars = cp_vehicle_table_create(sizeof(aeb_car), NULL);
     created->brake.jerk_m_s3 = parameter[JERK_M_S3];
     created->brake.deceleration_m_s2 =
         fmin(parameter[DECELERATION_M_S2], parameter[FRICTION_1] * CP_G0_M_S2);
@@ -152,22 +152,8 @@ static void destroy(void *state)
 {
     aeb *self = state;
     cp_lookout_destroy(&self->lookout);
-    free(self->cars);
+    cp_vehicle_table_destroy(&self->cars);
     free(self);
-}
-
-static cp_status reserve(aeb *self, uint32_t vehicle, cp_error *error)
-{
-    if (vehicle < self->numbers)
-        return CP_OK;
-    size_t numbers = 2 * ((size_t)vehicle + 1);
-    aeb_car *cars = realloc(self->cars, numbers * sizeof *cars);
-    if (!cars)
-        return cp_fail_memory(error, "aeb");
-    memset(&cars[self->numbers], 0, (numbers - self->numbers) * sizeof *cars);
-    self->cars = cars;
-    self->numbers = numbers;
-    return CP_OK;
 }
 
 static void request(aeb *self, aeb_car *car, double instant_s)
@@ -244,9 +230,8 @@ static void count_activation(aeb *self, const aeb_car *car)
 }
 
 static cp_status step_car(aeb *self, const cp_control_context *context,
-                          const cp_vehicle_motion *motion, cp_error *error)
+                          const cp_vehicle_motion *motion, aeb_car *car, cp_error *error)
 {
-    aeb_car *car = &self->cars[motion->after.vehicle];
     // Too slow to act: nothing is looked for, which spares the queues at junctions.
     if (!car->braking.is_requesting &&
         motion->after.speed_m_s < context->parameter[SPEED_MIN_M_S]) {
@@ -276,8 +261,9 @@ static cp_status step_equipped(void *state, const void *context, const cp_vehicl
                                cp_error *error)
 {
     aeb *self = state;
-    cp_status status = reserve(self, motion->after.vehicle, error);
-    return status == CP_OK ? step_car(self, context, motion, error) : status;
+    void *car;
+    cp_status status = cp_vehicle_table_take(&self->cars, motion->after.vehicle, &car, error);
+    return status == CP_OK ? step_car(self, context, motion, car, error) : status;
 }
 
 static cp_status step(void *state, const cp_control_context *context, cp_error *error)
@@ -285,6 +271,7 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
     aeb *self = state;
     if (!cp_equipment_is_any(context->equipment))
         return CP_OK;
+    cp_vehicle_table_prune(&self->cars, self->traffic);
     cp_status status = cp_lookout_step(&self->lookout, error);
     return status == CP_OK ? cp_equipment_each(context->equipment, self->traffic, step_equipped,
                                                self, context, error)

@@ -70,8 +70,7 @@ typedef struct elk_car {
 typedef struct elk {
     const cp_traffic *traffic;
     cp_lookout lookout;
-    elk_car *cars; /* by vehicle number */
-    size_t numbers;
+    cp_vehicle_table cars; /* an elk_car of each */
     size_t interventions;
 } elk;
 
@@ -92,6 +91,7 @@ static cp_status create(const cp_control_context *context, void **state, cp_erro
     };
     created->traffic = context->traffic;
     created->lookout = cp_lookout_create(&settings, context->traffic);
+    created->cars = cp_vehicle_table_create(sizeof(elk_car), NULL);
     *state = created;
     return CP_OK;
 }
@@ -100,22 +100,8 @@ static void destroy(void *state)
 {
     elk *self = state;
     cp_lookout_destroy(&self->lookout);
-    free(self->cars);
+    cp_vehicle_table_destroy(&self->cars);
     free(self);
-}
-
-static cp_status reserve(elk *self, uint32_t vehicle, cp_error *error)
-{
-    if (vehicle < self->numbers)
-        return CP_OK;
-    size_t numbers = 2 * ((size_t)vehicle + 1);
-    elk_car *cars = realloc(self->cars, numbers * sizeof *cars);
-    if (!cars)
-        return cp_fail_memory(error, "elk");
-    memset(&cars[self->numbers], 0, (numbers - self->numbers) * sizeof *cars);
-    self->cars = cars;
-    self->numbers = numbers;
-    return CP_OK;
 }
 
 // Time until the drifting side crosses the edge of its lane, negative since when; INFINITY when the
@@ -138,11 +124,11 @@ static bool is_oncoming(const elk *self, const cp_control_context *context,
                         const cp_vehicle_motion *own, double drift_1)
 {
     cp_vec2 axis = cp_vec2_heading(own->after.yaw_rad);
-    const cp_tracks *tracks = &self->lookout.tracks[own->after.vehicle];
-    for (size_t k = 0; k < tracks->count; k++) {
+    const cp_tracks tracks = cp_lookout_tracks_of(&self->lookout, own->after.vehicle);
+    for (size_t k = 0; k < tracks.count; k++) {
         const cp_vehicle_motion *other =
-            cp_traffic_motion_of(self->traffic, tracks->track[k].vehicle);
-        if (!other || !cp_lookout_is_known(&self->lookout, &tracks->track[k]))
+            cp_traffic_motion_of(self->traffic, tracks.track[k].vehicle);
+        if (!other || !cp_lookout_is_known(&self->lookout, &tracks.track[k]))
             continue;
         double apart_rad = fabs(cp_wrap_angle(other->after.yaw_rad - own->after.yaw_rad));
         cp_vec2 there_m = {other->after.front_x_m - own->after.front_x_m,
@@ -218,9 +204,8 @@ static cp_status steer(elk *self, const cp_control_context *context,
 }
 
 static cp_status step_car(elk *self, const cp_control_context *context,
-                          const cp_vehicle_motion *motion, cp_error *error)
+                          const cp_vehicle_motion *motion, elk_car *car, cp_error *error)
 {
-    elk_car *car = &self->cars[motion->after.vehicle];
     cp_status status = CP_OK;
     cp_lateral_overlay overlay =
         cp_lateral_overlay_get(cp_traffic_overlays(self->traffic), motion->after.vehicle);
@@ -241,8 +226,9 @@ static cp_status step_equipped(void *state, const void *context, const cp_vehicl
                                cp_error *error)
 {
     elk *self = state;
-    cp_status status = reserve(self, motion->after.vehicle, error);
-    return status == CP_OK ? step_car(self, context, motion, error) : status;
+    void *car;
+    cp_status status = cp_vehicle_table_take(&self->cars, motion->after.vehicle, &car, error);
+    return status == CP_OK ? step_car(self, context, motion, car, error) : status;
 }
 
 static cp_status step(void *state, const cp_control_context *context, cp_error *error)
@@ -250,6 +236,7 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
     elk *self = state;
     if (!cp_equipment_is_any(context->equipment))
         return CP_OK;
+    cp_vehicle_table_prune(&self->cars, self->traffic);
     cp_status status = cp_lookout_step(&self->lookout, error);
     return status == CP_OK ? cp_equipment_each(context->equipment, self->traffic, step_equipped,
                                                self, context, error)

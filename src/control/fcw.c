@@ -95,8 +95,7 @@ typedef struct fcw {
     cp_lookout lookout;
     cp_brake brake; /* but for its start */
     double release_ttc_s;
-    fcw_car *cars; /* by vehicle number */
-    size_t numbers;
+    cp_vehicle_table cars; /* an fcw_car of each */
     size_t warnings;
     size_t heeded;
     double braking_s;
@@ -126,6 +125,7 @@ static cp_status create(const cp_control_context *context, void **state, cp_erro
     };
     created->traffic = context->traffic;
     created->lookout = cp_lookout_create(&settings, context->traffic);
+    created->cars = cp_vehicle_table_create(sizeof(fcw_car), NULL);
     created->brake.jerk_m_s3 = parameter[JERK_M_S3];
     created->brake.deceleration_m_s2 =
         fmin(parameter[DECELERATION_M_S2], parameter[FRICTION_1] * CP_G0_M_S2);
@@ -138,22 +138,8 @@ static void destroy(void *state)
 {
     fcw *self = state;
     cp_lookout_destroy(&self->lookout);
-    free(self->cars);
+    cp_vehicle_table_destroy(&self->cars);
     free(self);
-}
-
-static cp_status reserve(fcw *self, uint32_t vehicle, cp_error *error)
-{
-    if (vehicle < self->numbers)
-        return CP_OK;
-    size_t numbers = 2 * ((size_t)vehicle + 1);
-    fcw_car *cars = realloc(self->cars, numbers * sizeof *cars);
-    if (!cars)
-        return cp_fail_memory(error, "fcw");
-    memset(&cars[self->numbers], 0, (numbers - self->numbers) * sizeof *cars);
-    self->cars = cars;
-    self->numbers = numbers;
-    return CP_OK;
 }
 
 // Warn, and see whether and when this driver brakes.
@@ -183,9 +169,8 @@ static void watch(fcw *self, const cp_control_context *context, const cp_vehicle
 }
 
 static cp_status step_car(fcw *self, const cp_control_context *context,
-                          const cp_vehicle_motion *motion, cp_error *error)
+                          const cp_vehicle_motion *motion, fcw_car *car, cp_error *error)
 {
-    fcw_car *car = &self->cars[motion->after.vehicle];
     // Too slow to act: nothing is looked for, which spares the queues at junctions.
     if (!car->is_warned && motion->after.speed_m_s < context->parameter[SPEED_MIN_M_S]) {
         cp_lookout_forget(&self->lookout, motion->after.vehicle);
@@ -218,8 +203,9 @@ static cp_status step_equipped(void *state, const void *context, const cp_vehicl
                                cp_error *error)
 {
     fcw *self = state;
-    cp_status status = reserve(self, motion->after.vehicle, error);
-    return status == CP_OK ? step_car(self, context, motion, error) : status;
+    void *car;
+    cp_status status = cp_vehicle_table_take(&self->cars, motion->after.vehicle, &car, error);
+    return status == CP_OK ? step_car(self, context, motion, car, error) : status;
 }
 
 static cp_status step(void *state, const cp_control_context *context, cp_error *error)
@@ -227,6 +213,7 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
     fcw *self = state;
     if (!cp_equipment_is_any(context->equipment))
         return CP_OK;
+    cp_vehicle_table_prune(&self->cars, self->traffic);
     cp_status status = cp_lookout_step(&self->lookout, error);
     return status == CP_OK ? cp_equipment_each(context->equipment, self->traffic, step_equipped,
                                                self, context, error)

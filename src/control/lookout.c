@@ -24,16 +24,22 @@ cp_target_class cp_target_class_of(const cp_moving_rectangle *own,
     return apart_rad > 0.75 * M_PI ? CP_TARGET_ONCOMING : CP_TARGET_CROSSING;
 }
 
+static void release_tracks(void *item)
+{
+    cp_tracks *tracks = item;
+    free(tracks->track);
+}
+
 cp_lookout cp_lookout_create(const cp_lookout_settings *settings, const cp_traffic *traffic)
 {
-    return (cp_lookout){.settings = *settings, .traffic = traffic};
+    return (cp_lookout){.settings = *settings,
+                        .traffic = traffic,
+                        .tracks = cp_vehicle_table_create(sizeof(cp_tracks), release_tracks)};
 }
 
 void cp_lookout_destroy(cp_lookout *lookout)
 {
-    for (size_t k = 0; k < lookout->numbers; k++)
-        free(lookout->tracks[k].track);
-    free(lookout->tracks);
+    cp_vehicle_table_destroy(&lookout->tracks);
     free(lookout->around);
     free(lookout->screens);
     free(lookout->outlines);
@@ -47,6 +53,7 @@ cp_status cp_lookout_step(cp_lookout *lookout, cp_error *error)
     const cp_vehicle_motion *motions = cp_traffic_motions(lookout->traffic, &count);
     // Fronts lie at most one sensor range and a long vehicle apart when the target is in view.
     double cell_m = lookout->settings.sensor.range_m + 20.0;
+    cp_vehicle_table_prune(&lookout->tracks, lookout->traffic);
     if (count > lookout->around_room) {
         size_t room = 2 * count;
         cp_rectangle *outlines = realloc(lookout->outlines, room * sizeof *outlines);
@@ -68,20 +75,6 @@ cp_status cp_lookout_step(cp_lookout *lookout, cp_error *error)
 }
 
 // ---- tracking ------------------------------------------------------------------------------
-
-static cp_status reserve_tracks(cp_lookout *lookout, uint32_t vehicle, cp_error *error)
-{
-    if (vehicle < lookout->numbers)
-        return CP_OK;
-    size_t numbers = 2 * ((size_t)vehicle + 1);
-    cp_tracks *tracks = realloc(lookout->tracks, numbers * sizeof *tracks);
-    if (!tracks)
-        return cp_fail_memory(error, "lookout");
-    memset(&tracks[lookout->numbers], 0, (numbers - lookout->numbers) * sizeof *tracks);
-    lookout->tracks = tracks;
-    lookout->numbers = numbers;
-    return CP_OK;
-}
 
 static void gather(void *context, const cp_vehicle_motion *motion)
 {
@@ -141,10 +134,11 @@ static cp_status note_seen(cp_lookout *lookout, cp_tracks *tracks, uint32_t own,
 cp_status cp_lookout_track(cp_lookout *lookout, const cp_vehicle_motion *own, cp_error *error)
 {
     uint32_t vehicle = own->after.vehicle;
-    cp_status status = reserve_tracks(lookout, vehicle, error);
+    void *item;
+    cp_status status = cp_vehicle_table_take(&lookout->tracks, vehicle, &item, error);
     if (status != CP_OK)
         return status;
-    cp_tracks *tracks = &lookout->tracks[vehicle];
+    cp_tracks *tracks = item;
     for (size_t k = 0; k < tracks->count; k++)
         tracks->track[k].is_seen = false;
 
@@ -173,8 +167,15 @@ cp_status cp_lookout_track(cp_lookout *lookout, const cp_vehicle_motion *own, cp
 
 void cp_lookout_forget(cp_lookout *lookout, uint32_t vehicle)
 {
-    if (vehicle < lookout->numbers)
-        lookout->tracks[vehicle].count = 0;
+    cp_tracks *tracks = cp_vehicle_table_find(&lookout->tracks, vehicle);
+    if (tracks != NULL)
+        tracks->count = 0;
+}
+
+cp_tracks cp_lookout_tracks_of(const cp_lookout *lookout, uint32_t vehicle)
+{
+    const cp_tracks *tracks = cp_vehicle_table_find(&lookout->tracks, vehicle);
+    return tracks != NULL ? *tracks : (cp_tracks){0};
 }
 
 bool cp_lookout_is_known(const cp_lookout *lookout, const cp_track *track)
@@ -295,12 +296,12 @@ static double find_instant(const cp_lookout_settings *settings, const cp_vehicle
 bool cp_lookout_threat(const cp_lookout *lookout, const cp_vehicle_motion *own, cp_threat *threat)
 {
     const cp_lookout_settings *settings = &lookout->settings;
-    const cp_tracks *tracks = &lookout->tracks[own->after.vehicle];
+    const cp_tracks tracks = cp_lookout_tracks_of(lookout, own->after.vehicle);
     double now_s = cp_traffic_time_s(lookout->traffic);
     double step_s = cp_traffic_step_length_s(lookout->traffic);
     bool found = false;
-    for (size_t k = 0; k < tracks->count; k++) {
-        const cp_track *track = &tracks->track[k];
+    for (size_t k = 0; k < tracks.count; k++) {
+        const cp_track *track = &tracks.track[k];
         const cp_vehicle_motion *target = cp_traffic_motion_of(lookout->traffic, track->vehicle);
         double known_s = track->seen_since_s + settings->confirmation_s, ttc_s;
         if (!target || !cp_lookout_is_known(lookout, track) || cp_turns_too_fast(own) ||
@@ -324,10 +325,10 @@ bool cp_lookout_threat(const cp_lookout *lookout, const cp_vehicle_motion *own, 
 bool cp_lookout_is_danger(const cp_lookout *lookout, const cp_vehicle_motion *own, double horizon_s)
 {
     const cp_lookout_settings *settings = &lookout->settings;
-    const cp_tracks *tracks = &lookout->tracks[own->after.vehicle];
+    const cp_tracks tracks = cp_lookout_tracks_of(lookout, own->after.vehicle);
     cp_moving_rectangle one = cp_moving_rectangle_of(own);
-    for (size_t k = 0; k < tracks->count; k++) {
-        const cp_track *track = &tracks->track[k];
+    for (size_t k = 0; k < tracks.count; k++) {
+        const cp_track *track = &tracks.track[k];
         const cp_vehicle_motion *target = cp_traffic_motion_of(lookout->traffic, track->vehicle);
         if (!target || !track->is_detectable)
             continue;

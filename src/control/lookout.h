@@ -5,6 +5,7 @@
 #include "control/neighbourhood.h"
 #include "control/sensor.h"
 #include "control/ttc.h"
+#include "control/vehicle_table.h"
 #include "core/rng.h"
 
 /* What a forward-looking function knows of the traffic before its car, and which of the vehicles it
@@ -75,8 +76,7 @@ typedef struct cp_lookout {
     cp_lookout_settings settings;
     const cp_traffic *traffic;
     cp_neighbourhood neighbourhood;
-    cp_tracks *tracks; /* by vehicle number */
-    size_t numbers;
+    cp_vehicle_table tracks;          /* a cp_tracks of each */
     cp_rectangle *outlines;           /* of all vehicles, in the order of the traffic's motions */
     const cp_vehicle_motion **around; /* vehicles near the car in hand, and their outlines */
     const cp_rectangle **screens;
@@ -102,6 +102,8 @@ CP_MUST_CHECK cp_status cp_lookout_track(cp_lookout *lookout, const cp_vehicle_m
                                          cp_error *error);
 
 void cp_lookout_forget(cp_lookout *lookout, uint32_t vehicle);
+/* The targets a car has in view, in no particular order; valid until the next car is tracked. */
+cp_tracks cp_lookout_tracks_of(const cp_lookout *lookout, uint32_t vehicle);
 
 /* Whether a target is detectable and has been in view long enough. */
 bool cp_lookout_is_known(const cp_lookout *lookout, const cp_track *track);

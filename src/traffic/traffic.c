@@ -111,12 +111,15 @@ static cp_status number_rows(cp_traffic *traffic, cp_error *error)
 static bool has_jumped(const cp_vehicle_state *before, const cp_vehicle_state *after,
                        double step_length_s)
 {
-    double chord_m =
-        hypot(after->front_x_m - before->front_x_m, after->front_y_m - before->front_y_m);
-    double fastest_m_s = fmax(fmax(before->speed_m_s, after->speed_m_s), 0.0);
+    double x_m = after->front_x_m - before->front_x_m, y_m = after->front_y_m - before->front_y_m;
+    double fastest_m_s =
+        before->speed_m_s > after->speed_m_s ? before->speed_m_s : after->speed_m_s;
     // One lane sideways (instant lane change) is no jump.
     double lane_width_m = 5.0;
-    return chord_m > 1.5 * fastest_m_s * step_length_s + lane_width_m;
+    double farthest_m = lane_width_m;
+    if (fastest_m_s > 0.0)
+        farthest_m += 1.5 * fastest_m_s * step_length_s;
+    return x_m * x_m + y_m * y_m > farthest_m * farthest_m;
 }
 
 // From a state of the last step, NULL without one, to one of this.

@@ -5,7 +5,9 @@
 The same traffic, with the same SUMO options, in four programs: plain 'sumo', an empty libsumo loop in
 C++, 'crashpulse run' with detection on and no driver error or function, and a Python libsumo script
 that reads all states and looks for overlapping pairs (with PYTHON, Debian's, which has libsumo; left
-out where it has none). Processor time of the steps between SHORT and LONG simulated seconds. The
+out where it has none). Beside them 'crashpulse run' with all driver errors of the town's own study and
+AEB in every car, whose traffic is another as soon as they brake or crash: for information. Processor
+time of the steps between SHORT and LONG simulated seconds. The
 programs run one after the other, REPEATS times (the Python script twice); every one writes its
 processor time each second of traffic (step_clock.cpp), and of every such second counts the least of all
 repeats: what a neighbour takes of a machine for a while does not last for all repeats of a second.
@@ -15,6 +17,7 @@ anonymous, the process's own: the rest are pages of program and library files, w
 The table goes to OUTPUT too. Exit status 1 when a bar is missed."""
 import os
 import pathlib
+import re
 import shlex
 import sqlite3
 import subprocess
@@ -31,6 +34,7 @@ repeats = int(sys.argv[5]) if len(sys.argv) > 5 else 9
 SHORT_S, LONG_S, STEP_S = 150, 250, 0.1  # --scale 2: 0.8 to 1.3 thousand vehicles
 STRETCH_STEPS = 10
 LOOP_BAR, PYTHON_BAR, MEMORY_BAR = 1.20, 0.2, 1.3
+FULL = "crashpulse run, driver errors and AEB"
 LOOK_S = 0.05  # between two looks at a program's memory
 environment = {**os.environ, "SUMO_HOME": "/usr/share/sumo", "STEP_CLOCK": os.devnull,
                "STEP_CLOCK_EVERY": str(STRETCH_STEPS)}
@@ -83,23 +87,26 @@ def peak_of(words, name):
     return max(samples)._replace(peak_mb=max(sample.peak_mb for sample in samples))
 
 
-def study(folder, duration_s):
+def study(folder, duration_s, is_full):
     path = folder / f"{duration_s}.yaml"
+    town = (source / "sumo_scenarios/town/study.yaml").read_text()
+    errors = re.search(r"^    driver_errors:.*?(?=^\S)", town, re.MULTILINE | re.DOTALL).group()
     path.write_text(
         f"study: bench\ndesign: independent\nseed: 1\nreplications: 1\nduration_s: {duration_s}\n"
         f"step_length_s: {STEP_S}\nscenarios:\n  - name: town\n"
         f"    sumocfg: {source}/sumo_scenarios/town/town.sumocfg\n"
-        "    sumo_options: [--scale, '2']\nvariants:\n  - name: baseline\n"
+        "    sumo_options: [--scale, '2']\n" + (errors if is_full else "") +
+        "variants:\n  - name: baseline\n" + ("    functions: [{function: aeb}]\n" if is_full else "") +
         "vehicles:\n  default: mid_size\nbackground: {duration_s: 0}\n")
     return path
 
 
-def crashpulse_words(folder, duration_s):
+def crashpulse_words(folder, duration_s, is_full=False):
     """A run of ours into a new database."""
     for old in folder.glob(f"{duration_s}.db*"):
         old.unlink()
-    return [build / "crashpulse", "run", study(folder, duration_s), "--db", folder / f"{duration_s}.db",
-            "--jobs", "1"]
+    return [build / "crashpulse", "run", study(folder, duration_s, is_full), "--db",
+            folder / f"{duration_s}.db", "--jobs", "1"]
 
 
 def exposure(folder, duration_s):
@@ -119,6 +126,7 @@ with tempfile.TemporaryDirectory() as name:
         "sumo": lambda s: ["sumo"] + words[1:] + WITHOUT_SCHEMAS + ["--end", s],
         "empty libsumo loop": lambda s: [build / "bench_empty_loop", round(s / STEP_S)] + words,
         "crashpulse run": lambda s: crashpulse_words(folder, s),
+        FULL: lambda s: crashpulse_words(folder, s, is_full=True),
         "Python libsumo script": lambda s: [python, here / "bench_python_loop.py",
                                             round(s / STEP_S)] + words,
     }
@@ -135,7 +143,7 @@ with tempfile.TemporaryDirectory() as name:
             if label != "Python libsumo script" or repeat < 2:
                 found.append(stretches_s(programs[label](end_s), folder / "clock"))
         print(f"repeat {repeat + 1} of {repeats}", file=sys.stderr, flush=True)
-    peak = {label: peak_of(program(LONG_S), "crashpulse-wor" if label == "crashpulse run" else "")
+    peak = {label: peak_of(program(LONG_S), "crashpulse-wor" if label.startswith("crashpulse") else "")
             for label, program in programs.items()}
     # What a user sees who runs the configuration by himself: no random numbers of its own for every lane.
     alone = peak_of(["sumo", "-c", words[words.index("-c") + 1], "--scale", "2", "--step-length", STEP_S,
@@ -178,7 +186,8 @@ pathlib.Path(output).write_text(
     "# What a step of traffic costs\n\nMade by `cmake --build build --target bench_traffic`. "
     "The same traffic, with the same SUMO options, in plain\n`sumo`, in an empty libsumo loop in C++, in "
     "`crashpulse run` with detection on and no driver error or\nfunction, and in a Python libsumo script "
-    "that reads all states and looks for overlapping pairs. Processor\ntime of the steps alone, interleaved. "
+    "that reads all states and looks for overlapping pairs. Beside\nthem `crashpulse run` with all driver errors of "
+    "the town's study and AEB in every car, whose traffic is another as\nsoon as somebody brakes. Processor\ntime of the steps alone, interleaved. "
     "Memory is that of the process that simulates; what is not anonymous are\npages of program and library files, "
     "which processes share.\n\n" + text)
 sys.exit(1 if is_missed else 0)

@@ -213,8 +213,9 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
     fcw *self = state;
     if (!cp_equipment_is_any(context->equipment))
         return CP_OK;
-    cp_vehicle_table_prune(&self->cars, self->traffic);
-    cp_status status = cp_lookout_step(&self->lookout, error);
+    cp_status status = cp_vehicle_table_prune(&self->cars, self->traffic, error);
+    if (status == CP_OK)
+        status = cp_lookout_step(&self->lookout, error);
     return status == CP_OK ? cp_equipment_each(context->equipment, self->traffic, step_equipped,
                                                self, context, error)
                            : status;

@@ -53,7 +53,6 @@ cp_status cp_lookout_step(cp_lookout *lookout, cp_error *error)
     const cp_vehicle_motion *motions = cp_traffic_motions(lookout->traffic, &count);
     // Fronts lie at most one sensor range and a long vehicle apart when the target is in view.
     double cell_m = lookout->settings.sensor.range_m + 20.0;
-    cp_vehicle_table_prune(&lookout->tracks, lookout->traffic);
     if (count > lookout->around_room) {
         size_t room = 2 * count;
         cp_rectangle *outlines = realloc(lookout->outlines, room * sizeof *outlines);
@@ -71,7 +70,10 @@ cp_status cp_lookout_step(cp_lookout *lookout, cp_error *error)
     }
     for (size_t k = 0; k < count; k++)
         lookout->outlines[k] = cp_moving_rectangle_of(&motions[k]).rectangle;
-    return cp_neighbourhood_fill(&lookout->neighbourhood, cell_m, motions, count, error);
+    cp_status status = cp_vehicle_table_prune(&lookout->tracks, lookout->traffic, error);
+    return status == CP_OK
+               ? cp_neighbourhood_fill(&lookout->neighbourhood, cell_m, motions, count, error)
+               : status;
 }
 
 // ---- tracking ------------------------------------------------------------------------------
@@ -90,9 +92,7 @@ static bool is_within_reach(const cp_lookout *lookout, const cp_vehicle_motion *
 {
     double reach_m = lookout->settings.horizon_s * (own->after.speed_m_s + other->after.speed_m_s) +
                      own->after.length_m + other->after.length_m;
-    double apart_x_m = other->after.front_x_m - own->after.front_x_m;
-    double apart_y_m = other->after.front_y_m - own->after.front_y_m;
-    return apart_x_m * apart_x_m + apart_y_m * apart_y_m <= reach_m * reach_m;
+    return cp_front_distance_m2(own, other) <= reach_m * reach_m;
 }
 
 static bool is_detectable(const cp_lookout *lookout, uint32_t own, uint32_t target)

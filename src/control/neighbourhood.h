@@ -33,4 +33,13 @@ void cp_neighbourhood_visit(const cp_neighbourhood *neighbourhood, double x_m, d
                             void (*visit)(void *context, const cp_vehicle_motion *motion),
                             void *context);
 
+/* Square of the distance of two fronts: who looks at all others every step compares squares. */
+static inline double cp_front_distance_m2(const cp_vehicle_motion *one,
+                                          const cp_vehicle_motion *other)
+{
+    double x_m = other->after.front_x_m - one->after.front_x_m;
+    double y_m = other->after.front_y_m - one->after.front_y_m;
+    return x_m * x_m + y_m * y_m;
+}
+
 #endif

@@ -11,7 +11,7 @@ typedef struct disc {
 
 static disc around(const cp_rectangle *rectangle)
 {
-    return (disc){rectangle->centre_m, 0.5 * hypot(rectangle->length_m, rectangle->width_m)};
+    return (disc){rectangle->centre_m, cp_rectangle_half_diagonal_m(rectangle)};
 }
 
 // Whether a disc lies clear of all ways from a point into another disc.
@@ -93,7 +93,8 @@ bool cp_sensor_sees(const cp_sensor *sensor, const cp_rectangle *own, const cp_r
     cp_pose mounting = {own->centre_m, own->yaw_rad};
     mounting.position_m = cp_pose_to_world(mounting, (cp_vec2){0.5 * own->length_m, 0.0});
     cp_pose there = {target->centre_m, target->yaw_rad};
-    if (is_outside(sensor, cp_pose_to_local(mounting, target->centre_m), around(target).radius_m))
+    if (is_outside(sensor, cp_pose_to_local(mounting, target->centre_m),
+                   cp_rectangle_half_diagonal_m(target)))
         return false;
 
     // Few are in the way. More than there is room for: then all are looked at.

@@ -56,11 +56,6 @@ cp_rectangle cp_moving_rectangle_at(const cp_moving_rectangle *moving, double ti
     return there;
 }
 
-static double half_diagonal_m(const cp_rectangle *rectangle)
-{
-    return 0.5 * hypot(rectangle->length_m, rectangle->width_m);
-}
-
 // Half the extent of a rectangle along a unit vector.
 static double half_extent_m(const cp_rectangle *rectangle, cp_vec2 axis)
 {
@@ -102,8 +97,8 @@ static double turning_ttc_s(const cp_moving_rectangle *a, const cp_moving_rectan
                             double horizon_s)
 {
     const double contact_m = 1e-3;
-    double spin_m_s = fabs(a->yaw_rate_rad_s) * half_diagonal_m(&a->rectangle) +
-                      fabs(b->yaw_rate_rad_s) * half_diagonal_m(&b->rectangle);
+    double spin_m_s = fabs(a->yaw_rate_rad_s) * cp_rectangle_half_diagonal_m(&a->rectangle) +
+                      fabs(b->yaw_rate_rad_s) * cp_rectangle_half_diagonal_m(&b->rectangle);
     double acceleration_m_s2 = fabs(a->yaw_rate_rad_s) * cp_vec2_length(a->velocity_m_s) +
                                fabs(b->yaw_rate_rad_s) * cp_vec2_length(b->velocity_m_s);
     double time_s = 0.0;
@@ -129,7 +124,8 @@ double cp_ttc_s(const cp_moving_rectangle *a, const cp_moving_rectangle *b, doub
     // Most pairs are too far apart to meet at all.
     double distance_m = cp_vec2_length(cp_vec2_sub(b->rectangle.centre_m, a->rectangle.centre_m));
     double speed_m_s = cp_vec2_length(a->velocity_m_s) + cp_vec2_length(b->velocity_m_s);
-    double reach_m = half_diagonal_m(&a->rectangle) + half_diagonal_m(&b->rectangle);
+    double reach_m =
+        cp_rectangle_half_diagonal_m(&a->rectangle) + cp_rectangle_half_diagonal_m(&b->rectangle);
     if (distance_m > reach_m + speed_m_s * horizon_s)
         return INFINITY;
     if (a->yaw_rate_rad_s == 0.0 && b->yaw_rate_rad_s == 0.0)

@@ -63,9 +63,11 @@ void *cp_vehicle_table_find(const cp_vehicle_table *table, uint32_t vehicle)
     return row != CP_NO_ROW ? item_of(table, row) : NULL;
 }
 
-void cp_vehicle_table_prune(cp_vehicle_table *table, const cp_traffic *traffic)
+cp_status cp_vehicle_table_prune(cp_vehicle_table *table, const cp_traffic *traffic,
+                                 cp_error *error)
 {
-    for (size_t row = table->count; row-- > 0;) {
+    cp_status status = CP_OK;
+    for (size_t row = table->count; row-- > 0 && status == CP_OK;) {
         uint32_t vehicle = table->vehicles[row];
         if (cp_traffic_motion_of(traffic, vehicle) != NULL)
             continue;
@@ -73,15 +75,13 @@ void cp_vehicle_table_prune(cp_vehicle_table *table, const cp_traffic *traffic)
             table->release(item_of(table, row));
         cp_recent_rows_clear(&table->row_of, vehicle);
 
-        // The last one takes its place; all behind it are on the road. It has a row: no memory is
-        // needed to give it another.
+        // The last one takes its place; all behind it are on the road.
         size_t last = --table->count;
         if (row == last)
             continue;
         memcpy(item_of(table, row), item_of(table, last), table->item_size);
         table->vehicles[row] = table->vehicles[last];
-        cp_status status =
-            cp_recent_rows_set(&table->row_of, table->vehicles[row], (uint32_t)row, NULL);
-        (void)status;
+        status = cp_recent_rows_set(&table->row_of, table->vehicles[row], (uint32_t)row, error);
     }
+    return status;
 }

@@ -27,7 +27,8 @@ CP_MUST_CHECK cp_status cp_vehicle_table_take(cp_vehicle_table *table, uint32_t 
                                               void **item, cp_error *error);
 /* The item of a vehicle, NULL when there is none. */
 void *cp_vehicle_table_find(const cp_vehicle_table *table, uint32_t vehicle);
-/* Drop the items of all vehicles that are not on the road. */
-void cp_vehicle_table_prune(cp_vehicle_table *table, const cp_traffic *traffic);
+/* Drop the items of all vehicles that are not on the road. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_vehicle_table_prune(cp_vehicle_table *table, const cp_traffic *traffic,
+                                               cp_error *error);
 
 #endif

@@ -76,6 +76,12 @@ static inline cp_vec2 cp_point_velocity(cp_vec2 velocity_m_s, double rate_rad_s,
     return (cp_vec2){velocity_m_s.x - rate_rad_s * r_m.y, velocity_m_s.y + rate_rad_s * r_m.x};
 }
 
+/* From the centre of a rectangle to its corners. */
+static inline double cp_rectangle_half_diagonal_m(const cp_rectangle *rectangle)
+{
+    return 0.5 * hypot(rectangle->length_m, rectangle->width_m);
+}
+
 /* A point given in the frame of pose, in the world, and back. */
 static inline cp_vec2 cp_pose_to_world(cp_pose pose, cp_vec2 local_m)
 {

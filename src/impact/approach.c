@@ -55,7 +55,7 @@ double cp_approach_rate(const cp_rectangle rectangle[2], double relative_speed_m
     // moves its corners, and its centre about its reference point.
     double reach_m = 0.0;
     for (int k = 0; k < 2; k++)
-        reach_m += hypot(rectangle[k].length_m, rectangle[k].width_m);
+        reach_m += 2.0 * cp_rectangle_half_diagonal_m(&rectangle[k]);
     double centres_m = cp_vec2_length(cp_vec2_sub(rectangle[0].centre_m, rectangle[1].centre_m));
     double turning_rad_s = fabs(yaw_rate_rad_s[0]) + fabs(yaw_rate_rad_s[1]);
     double span_m = centres_m + relative_speed_m_s * duration_s + 2.0 * reach_m;

@@ -2,6 +2,7 @@
 #include "control/control_types.h"
 
 #include "control/driver_error/ignored_foes.h"
+#include "control/neighbourhood.h"
 #include "core/geometry.h"
 
 #include <math.h>
@@ -118,9 +119,7 @@ static cp_status meet(failed_to_see *self, const cp_control_context *context, ui
 // Front to front.
 static bool is_nearer(const cp_vehicle_motion *one, const cp_vehicle_motion *other, double than_m)
 {
-    double x_m = other->after.front_x_m - one->after.front_x_m;
-    double y_m = other->after.front_y_m - one->after.front_y_m;
-    return x_m * x_m + y_m * y_m < than_m * than_m;
+    return cp_front_distance_m2(one, other) < than_m * than_m;
 }
 
 /* A look of one driver for those he overlooks. */

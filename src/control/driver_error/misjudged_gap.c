@@ -192,8 +192,7 @@ static bool is_at_fault(const void *state, uint32_t vehicle)
         if (self->decisions[k].ego != vehicle)
             continue;
         const cp_vehicle_motion *foe = cp_traffic_motion_of(self->traffic, self->decisions[k].foe);
-        if (foe && hypot(foe->after.front_x_m - own->after.front_x_m,
-                         foe->after.front_y_m - own->after.front_y_m) < near_m)
+        if (foe && cp_front_distance_m2(own, foe) < near_m * near_m)
             return true;
     }
     return false;

@@ -45,7 +45,7 @@ static const struct argp ARGP = {
     .parser = parse,
     .args_doc = "DB [QUERY]",
     .doc = "Ask the database of a study. With QUERY: print the result of one SQL statement that "
-           "reads. Without: start the sqlite3 shell on it."
+           "reads. Without: start the sqlite3 shell on it, which also reads SQL from a pipe."
            "\v"
            "Tables and views are described in db/schema and db/views.sql, questions others asked "
            "are in db/queries. The functions of the SQL extension are loaded: median, quantile, "
@@ -89,14 +89,17 @@ static void find_extension(char path[PATH_MAX])
     }
 }
 
-static cp_status start_shell(const char *db_path, const char *extension, cp_error *error)
+static cp_status start_shell(const char *db_path, const char *extension, cp_format format,
+                             cp_error *error)
 {
+    static const char *const MODE[] = {
+        [CP_FORMAT_TABLE] = "-column", [CP_FORMAT_JSON] = "-json", [CP_FORMAT_CSV] = "-csv"};
     char load[PATH_MAX + 16];
     snprintf(load, sizeof load, ".load '%s'", extension);
     if (extension[0] != '\0')
-        execlp("sqlite3", "sqlite3", "-header", "-column", "-cmd", load, db_path, (char *)NULL);
+        execlp("sqlite3", "sqlite3", "-header", MODE[format], "-cmd", load, db_path, (char *)NULL);
     else
-        execlp("sqlite3", "sqlite3", "-header", "-column", db_path, (char *)NULL);
+        execlp("sqlite3", "sqlite3", "-header", MODE[format], db_path, (char *)NULL);
     return cp_fail(error, CP_BAD_INPUT,
                    "cannot start the sqlite3 shell (%s); install sqlite3 or give a QUERY",
                    strerror(errno));
@@ -130,5 +133,5 @@ cp_status cmd_sql(int argc, char **argv, cp_error *error)
     if (a.query && status == CP_OK)
         status = print_query(store, &a, error);
     cp_store_close(store);
-    return a.query ? status : start_shell(a.db_path, extension, error);
+    return a.query ? status : start_shell(a.db_path, extension, a.format, error);
 }

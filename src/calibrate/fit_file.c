@@ -58,6 +58,7 @@ typedef struct yaml_fit {
     char *local_time_step_s;
     char *local_evaluations;
     char *starts;
+    char *offspring;
     char *slope_evaluations;
     char *soft_g;
     char *prior_g;
@@ -126,6 +127,7 @@ static const cyaml_schema_field_t FIT_FIELDS[] = {
     OPTIONAL_TEXT(local_time_step_s, yaml_fit),
     OPTIONAL_TEXT(local_evaluations, yaml_fit),
     OPTIONAL_TEXT(starts, yaml_fit),
+    OPTIONAL_TEXT(offspring, yaml_fit),
     OPTIONAL_TEXT(slope_evaluations, yaml_fit),
     OPTIONAL_TEXT(soft_g, yaml_fit),
     OPTIONAL_TEXT(prior_g, yaml_fit),
@@ -175,6 +177,9 @@ static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp
     if (status == CP_OK)
         status = read_count(file, "starts", yaml->starts, 1, 100, 1, &fit->starts, error);
     if (status == CP_OK)
+        status =
+            read_count(file, "offspring", yaml->offspring, 0, 10000, 0, &fit->offspring, error);
+    if (status == CP_OK)
         status = read_count(file, "slope_evaluations", yaml->slope_evaluations, 0, 1e7, 0,
                             &fit->slope_evaluations, error);
     if (status == CP_OK)
@@ -204,9 +209,15 @@ bool cp_fit_draws_starts(const cp_fit *fit)
     return fit->generations == 0 && fit->starts > 1;
 }
 
-// An eighth of the evaluations must find the slopes once and take a step.
+// An eighth of the evaluations must find the slopes once and take a step; children have two
+// parents.
 static cp_status check_drawn_starts(const cp_yaml_file *file, const cp_fit *fit, cp_error *error)
 {
+    if (fit->offspring > 0 && !cp_fit_draws_starts(fit))
+        return cp_yaml_fail(file, error, "offspring",
+                            "goes with generations: 0 and at least 2 starts, found %zu generations "
+                            "and %zu start%s",
+                            fit->generations, fit->starts, fit->starts == 1 ? "" : "s");
     size_t least = 8 * (fit->unknown_count + 2);
     if (!cp_fit_draws_starts(fit) || fit->slope_evaluations >= least)
         return CP_OK;
@@ -402,6 +413,18 @@ static cp_status load_reference(const cp_yaml_file *file, const yaml_fit *yaml, 
     return status;
 }
 
+// A part of a cross-validation holds something out, and leaves something to be fitted to.
+static cp_status check_folds(const cp_yaml_file *file, const char *key, size_t folds,
+                             const cp_fit *fit, cp_error *error)
+{
+    if (folds == 0 || (folds > 1 && folds <= fit->reference.count))
+        return CP_OK;
+    return cp_yaml_fail(file, error, key,
+                        "must be 0, or from 2 to the %zu configurations of the reference, found "
+                        "%zu",
+                        fit->reference.count, folds);
+}
+
 // The files a fit file names, as seen from its folder.
 static cp_status load_named_files(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
                                   cp_error *error)
@@ -445,6 +468,10 @@ cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error)
         status = check_drawn_starts(&file, fit, error);
     if (status == CP_OK)
         status = load_named_files(&file, yaml, fit, error);
+    if (status == CP_OK)
+        status = check_folds(&file, "folds", fit->folds, fit, error);
+    if (status == CP_OK)
+        status = check_folds(&file, "neighbour_folds", fit->neighbour_folds, fit, error);
     cp_yaml_close(&file);
     if (status == CP_OK)
         status = cp_hash_file(path, fit->hash, error);

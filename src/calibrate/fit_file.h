@@ -51,18 +51,19 @@ typedef struct cp_fit {
     size_t local_evaluations;  /* of Nelder-Mead, default 1000; 0: none */
     size_t starts;             /* global searches from other seeds; the best counts; default 1.
                                   Without generations: drawn around base (drawn_starts.h) */
-    size_t slope_evaluations;  /* of least squares, default 0: none; of several starts each gets
-                                  a quarter, an eighth if drawn, the best in the end all */
-    double soft_g;          /* error from which on least squares count the absolute value, not the
-                               square; default 0.3 */
-    double prior_g;         /* what an unknown must take off the summed errors to move through the
-                               whole of its bounds from its value in base, so that those the
-                               references say little of stay where they are known to be; default
-                               0: free */
-    size_t folds;           /* of the cross-validation, default 0: none */
-    size_t neighbour_folds; /* of one with neighbours apart (cross_validation.h), likewise */
-    bool leave_out[4];      /* also leave out one level at a time of: -, speed, offset, angle
-                               (index: cp_cross_kind) */
+    size_t offspring;         /* children of starts drawn around base (drawn_starts.h), default 0 */
+    size_t slope_evaluations; /* of least squares, default 0: none; of several starts each gets
+                                 a quarter, an eighth if drawn, the best in the end all */
+    double soft_g;            /* error from which on least squares count the absolute value, not the
+                                 square; default 0.3 */
+    double prior_g;           /* what an unknown must take off the summed errors to move through the
+                                 whole of its bounds from its value in base, so that those the
+                                 references say little of stay where they are known to be; default
+                                 0: free */
+    size_t folds;             /* of the cross-validation, default 0: none */
+    size_t neighbour_folds;   /* of one with neighbours apart (cross_validation.h), likewise */
+    bool leave_out[4];        /* also leave out one level at a time of: -, speed, offset, angle
+                                 (index: cp_cross_kind) */
     cp_plausibility plausible; /* bounds of the pulse's marks */
     int threads;               /* default 1 */
     size_t unknown_count;

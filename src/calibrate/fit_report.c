@@ -83,24 +83,37 @@ static void write_misfit(FILE *file, const cp_fit *fit, const cp_calibration *ca
             fit->reference.count);
 }
 
+// How it was searched for.
+static void write_way(FILE *file, const cp_fit *fit)
+{
+    if (cp_fit_draws_starts(fit)) {
+        fprintf(file, "%zu starts, the base and vehicles drawn around it (seed %u), ", fit->starts,
+                fit->seed);
+        if (fit->offspring > 0)
+            fprintf(file, "and %zu offspring of the best, each brought down by ", fit->offspring);
+        else
+            fprintf(file, "narrowed down by ");
+        fprintf(file, "least squares (%zu evaluations for the last, time step %g s)",
+                fit->slope_evaluations, fit->local_time_step_s);
+    } else {
+        fprintf(file,
+                "%zu start%s of: global search `%s` (seed %u, population %zu, %zu generations, "
+                "time step %g s), then least squares (%zu evaluations, time step %g s)",
+                fit->starts, fit->starts == 1 ? "" : "s", fit->algorithm, fit->seed,
+                fit->population, fit->generations, fit->global_time_step_s, fit->slope_evaluations,
+                fit->local_time_step_s);
+    }
+    fprintf(file, "; from the best Nelder-Mead (%zu evaluations).\n", fit->local_evaluations);
+}
+
 static void write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
 {
     const cp_vehicle_model *model = &calibration->model;
     fprintf(file,
             "# Made by crashpulse calibrate; the report of the fit stands beside this file.\n");
     fprintf(file, "# fit file sha256 %s\n# reference sha256 %s\n", fit->hash, fit->reference.hash);
-    if (cp_fit_draws_starts(fit))
-        fprintf(
-            file,
-            "# %zu starts drawn around the base (seed %u), least squares, %zu evaluations for the "
-            "last, then Nelder-Mead, %zu evaluations\n",
-            fit->starts, fit->seed, fit->slope_evaluations, fit->local_evaluations);
-    else
-        fprintf(file,
-                "# %zu x (%s, seed %u, population %zu, generations %zu, then least squares, %zu "
-                "evaluations), then Nelder-Mead, %zu evaluations\n",
-                fit->starts, fit->algorithm, fit->seed, fit->population, fit->generations,
-                fit->slope_evaluations, fit->local_evaluations);
+    fprintf(file, "# ");
+    write_way(file, fit);
     write_misfit(file, fit, calibration);
     fprintf(file, "vehicle: %s\n", fit->name);
     if (fit->description[0] != '\0')
@@ -270,27 +283,6 @@ static void write_objective(FILE *file, const cp_fit *fit, const cp_calibration 
             "Objective: weighted mean total error over %zu pulses, MAE a_x + MAE a_y + 10 MAE v_x "
             "+ 10 MAE v_y + MAE of the time of v_x = 0 (g, m/s, s): **%.3f**. ",
             fit->pulse_count, calibration->objective);
-}
-
-// How it was searched for.
-static void write_way(FILE *file, const cp_fit *fit)
-{
-    if (cp_fit_draws_starts(fit))
-        fprintf(file,
-                "%zu starts, the base and vehicles drawn around it (seed %u), narrowed down by "
-                "least squares (%zu evaluations for the last, time step %g s); from the best "
-                "Nelder-Mead (%zu evaluations).\n",
-                fit->starts, fit->seed, fit->slope_evaluations, fit->local_time_step_s,
-                fit->local_evaluations);
-    else
-        fprintf(
-            file,
-            "%zu start%s of: global search `%s` (seed %u, population %zu, %zu generations, time "
-            "step %g s), then least squares (%zu evaluations); from the best Nelder-Mead (%zu "
-            "evaluations, time step %g s).\n",
-            fit->starts, fit->starts == 1 ? "" : "s", fit->algorithm, fit->seed, fit->population,
-            fit->generations, fit->global_time_step_s, fit->slope_evaluations,
-            fit->local_evaluations, fit->local_time_step_s);
 }
 
 static void write_report(FILE *file, const cp_fit *fit, const cp_calibration *calibration)

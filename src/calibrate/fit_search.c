@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/fit_search.h"
 
+#include "calibrate/descent_journal.h"
 #include "calibrate/drawn_starts.h"
 #include "calibrate/least_squares.h"
 #include "calibrate/objective.h"
@@ -30,6 +31,8 @@ typedef struct search {
     cp_fit_work *work;
     double excess_1[CP_MARK_COUNT]; /* of the candidate judged last */
     double known[CP_UNKNOWNS_MAX];  /* point of the base vehicle */
+    cp_descent_journal journal;     /* of drawn starts */
+    double *residual;               /* of the candidate judged last, likewise; else NULL */
     cp_progress progress;
     cp_status failed;
     cp_error *error;
@@ -175,7 +178,8 @@ static size_t olc_residuals(const search *run, bool no_car, double *residual)
     return row;
 }
 
-// All misfits with their sign, then how far the unknowns have come; the value beside them.
+// All misfits with their sign, then how far the unknowns have come; the value beside them, or among
+// drawn starts what least squares make small.
 static double residuals_at(void *context, const double *point, size_t dimension, double *residual,
                            size_t count)
 {
@@ -186,7 +190,7 @@ static double residuals_at(void *context, const double *point, size_t dimension,
                                                      : olc_residuals(run, no_car, residual);
     for (size_t k = 0; row < count; k++)
         residual[row++] = run->fit->prior_g * (point[k] - run->known[k]);
-    return value;
+    return run->residual != NULL ? cp_robust_mean(residual, count, run->fit->soft_g) : value;
 }
 
 // ---- the stages ------------------------------------------------------------------------------
@@ -249,8 +253,8 @@ static size_t residual_count(const search *run)
            (fit->prior_g > 0.0 ? fit->unknown_count : 0);
 }
 
-// Down the slopes of all misfits.
-static cp_status search_slopes(search *run, size_t evaluations, double *point)
+// Down the slopes of all misfits; label: what the progress line calls it.
+static cp_status search_slopes(search *run, const char *label, size_t evaluations, double *point)
 {
     const cp_fit *fit = run->fit;
     if (evaluations == 0)
@@ -265,7 +269,7 @@ static cp_status search_slopes(search *run, size_t evaluations, double *point)
                                  .evaluations = evaluations,
                                  .progress = show_progress};
     double value = 0.0;
-    cp_progress_begin(&run->progress, "least squares", evaluations);
+    cp_progress_begin(&run->progress, label, evaluations);
     cp_status status = cp_least_squares_search(&settings, point, &value, run->error);
     cp_progress_end(&run->progress);
     return status == CP_OK ? run->failed : status;
@@ -306,25 +310,57 @@ static void state_path(const char *stem, size_t start, char path[4096])
     snprintf(path, 4096, "%s.start%zu.fit.state", stem, start + 1);
 }
 
+// Starts and children are compared by what brings them down.
+static double cost_at(void *context, const double *point, size_t dimension)
+{
+    search *run = context;
+    return residuals_at(run, point, dimension, run->residual, residual_count(run));
+}
+
+// Down the slopes, or to where a search that was killed has come that way.
 static cp_status descend(void *context, size_t evaluations, double *point)
 {
-    return search_slopes(context, evaluations, point);
+    search *run = context;
+    bool known = false;
+    double before = cost_at(run, point, run->fit->unknown_count);
+    cp_status status =
+        cp_descent_journal_recall(&run->journal, evaluations, before, point, &known, run->error);
+    if (status != CP_OK || known)
+        return status;
+    char label[64];
+    snprintf(label, sizeof label, "descent %zu of %zu", run->journal.count + 1,
+             cp_drawn_starts_descents(run->fit->starts, run->fit->offspring));
+    status = search_slopes(run, label, evaluations, point);
+    return status == CP_OK
+               ? cp_descent_journal_add(&run->journal, evaluations, before, point, run->error)
+               : status;
 }
 
 // Without a global search: from what is known and from points drawn around it.
-static cp_status search_drawn_starts(search *run, uint32_t seed, double *point)
+static cp_status search_drawn_starts(search *run, const char *stem, uint32_t seed, double *point)
 {
     const cp_fit *fit = run->fit;
-    cp_drawn_starts starts = {.value = value_at,
+    cp_drawn_starts starts = {.value = cost_at,
                               .descend = descend,
                               .context = run,
                               .known = run->known,
                               .dimension = fit->unknown_count,
                               .count = fit->starts,
+                              .offspring = fit->offspring,
                               .evaluations = fit->slope_evaluations,
                               .seed = seed};
     run->time_step_s = fit->local_time_step_s;
-    cp_status status = cp_drawn_starts_search(&starts, point, run->error);
+    run->residual = calloc(residual_count(run), sizeof *run->residual);
+    if (run->residual == NULL)
+        return cp_fail_memory(run->error, "starts of a search");
+    char path[4096];
+    state_path(stem, 0, path);
+    cp_status status = cp_descent_journal_open(&run->journal, path, fit->unknown_count, run->error);
+    if (status == CP_OK)
+        status = cp_drawn_starts_search(&starts, point, run->error);
+    cp_descent_journal_close(&run->journal);
+    free(run->residual);
+    run->residual = NULL;
     return status == CP_OK ? run->failed : status;
 }
 
@@ -341,8 +377,8 @@ static cp_status search_starts(search *run, const char *stem, uint32_t seed, dou
         state_path(stem, s, path);
         status = search_globally(run, path, seed + 1000 * (uint32_t)s, candidate);
         if (status == CP_OK)
-            status =
-                search_slopes(run, fit->slope_evaluations / (fit->starts > 1 ? 4 : 1), candidate);
+            status = search_slopes(run, "least squares",
+                                   fit->slope_evaluations / (fit->starts > 1 ? 4 : 1), candidate);
         if (status != CP_OK)
             break;
         run->time_step_s = fit->local_time_step_s;
@@ -353,7 +389,7 @@ static cp_status search_starts(search *run, const char *stem, uint32_t seed, dou
         }
     }
     if (status == CP_OK && fit->starts > 1)
-        status = search_slopes(run, fit->slope_evaluations, point);
+        status = search_slopes(run, "least squares", fit->slope_evaluations, point);
     return status;
 }
 
@@ -379,7 +415,7 @@ cp_status cp_fit_search(const cp_fit *fit, const bool *use, const char *state_st
     search run = {.fit = fit, .use = use, .work = work, .failed = CP_OK, .error = error};
     cp_candidate_point(&fit->base, fit->unknown, fit->unknown_count, run.known);
     double point[CP_UNKNOWNS_MAX] = {0};
-    cp_status status = cp_fit_draws_starts(fit) ? search_drawn_starts(&run, seed, point)
+    cp_status status = cp_fit_draws_starts(fit) ? search_drawn_starts(&run, state_stem, seed, point)
                                                 : search_starts(&run, state_stem, seed, point);
     if (status == CP_OK)
         status = search_locally(&run, point);

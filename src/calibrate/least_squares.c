@@ -42,14 +42,26 @@ static double evaluate(descent *work, const double *point, double *residual)
     return value;
 }
 
-static double robust_cost(const cp_least_squares *s, const double *residual)
+static double cost_of(const double *residual, size_t count, double soft)
 {
     double cost = 0.0;
-    for (size_t k = 0; k < s->count; k++) {
-        double share = residual[k] / s->soft;
-        cost += 2.0 * s->soft * s->soft * (sqrt(1.0 + share * share) - 1.0);
+    for (size_t k = 0; k < count; k++) {
+        double share = residual[k] / soft;
+        cost += 2.0 * soft * soft * (sqrt(1.0 + share * share) - 1.0);
     }
     return cost;
+}
+
+static double robust_cost(const cp_least_squares *s, const double *residual)
+{
+    return cost_of(residual, s->count, s->soft);
+}
+
+double cp_robust_mean(const double *residual, size_t count, double soft)
+{
+    // The cost of one, solved for the misfit.
+    double share = 1.0 + cost_of(residual, count, soft) / (2.0 * soft * soft * (double)count);
+    return soft * sqrt(share * share - 1.0);
 }
 
 // Slopes of all residuals by a step in every coordinate, away from the nearer bound.

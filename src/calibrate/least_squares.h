@@ -32,6 +32,10 @@ typedef struct cp_least_squares {
     void (*progress)(void *context, size_t done, double best);
 } cp_least_squares;
 
+/* The misfit that, the same everywhere, costs as much as these: their root mean square for a large
+ * soft, their mean absolute value for a small one, and between the two in between. */
+double cp_robust_mean(const double *residual, size_t count, double soft);
+
 /* Improve point in place; *value receives the value at it, never worse than at the start. Errors:
  * CP_NO_MEMORY, CP_BAD_INPUT (fewer residuals than coordinates). */
 CP_MUST_CHECK cp_status cp_least_squares_search(const cp_least_squares *settings, double *point,

@@ -303,7 +303,8 @@ cp_status cp_yaml_number(const cp_yaml_file *file, const char *key_path, const c
         return CP_OK;
     double number = 0.0;
     if (!cp_parse_number(text, &number))
-        return cp_yaml_fail(file, error, key_path, "must be a number, found '%s'", text);
+        return cp_yaml_fail(file, error, key_path, "must be a number from %g to %g, found '%s'",
+                            smallest, largest, text);
     if (number < smallest || number > largest)
         return cp_yaml_fail(file, error, key_path, "must be between %g and %g, found %s", smallest,
                             largest, text);

@@ -225,6 +225,70 @@ static void drawn_starts_lead_to_the_twin(void **state)
         assert_near(cp_vehicle_model_get(&found[0], k), cp_vehicle_model_get(&found[1], k), 0.0);
 }
 
+// The journal of a search, cut after so many lines as if it had been killed there.
+static void cut_journal(const workshop *shop, size_t lines)
+{
+    char path[256], *content = NULL;
+    size_t size = 0;
+    cp_error error = {0};
+    snprintf(path, sizeof path, "%s/twin.yaml.start1.fit.state", shop->folder);
+    assert_int_equal(cp_file_read(path, &content, &size, &error), CP_OK);
+    size_t keep = 0;
+    for (size_t k = 0; k < lines; k++)
+        keep += strcspn(content + keep, "\n") + 1;
+    assert_true(keep < size);
+    assert_int_equal(cp_file_write(path, content, keep, &error), CP_OK);
+    free(content);
+}
+
+// Offspring of drawn starts find the twin; killed after any number of descents the search goes on
+// to the same bits; and a journal of another fit is refused, not followed.
+static void offspring_lead_to_the_twin_whether_killed_or_not(void **state)
+{
+    (void)state;
+    char lines[768];
+    snprintf(lines, sizeof lines,
+             "generations: 0\nstarts: 3\noffspring: 2\nslope_evaluations: 60\n"
+             "local_evaluations: 0\n%s",
+             TWO_UNKNOWNS);
+    workshop shop = open_workshop(lines);
+    cp_fit fit;
+    cp_calibration first, again;
+    cp_error error = {0};
+    run_fit(&shop, &fit, &first);
+    assert_true(first.validation.mean_abs_error_g < 0.02);
+    for (size_t descents = 0; descents < 6; descents += 2) {
+        cut_journal(&shop, descents);
+        if (cp_calibration_run(&fit, &again, &error) != CP_OK)
+            fail_msg("%s", error.text);
+        for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++)
+            assert_near(cp_vehicle_model_get(&first.model, k),
+                        cp_vehicle_model_get(&again.model, k), 0.0);
+        cp_calibration_destroy(&again);
+    }
+
+    // Other reference values: every descent would begin with another error.
+    cut_journal(&shop, 3);
+    fit.reference.cases[0].olc_g += 1.0;
+    assert_int_equal(cp_calibration_run(&fit, &again, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "twin.yaml.start1.fit.state:1: is of another fit"));
+    fit.reference.cases[0].olc_g -= 1.0;
+
+    // The report says how it was searched; then nothing is left of the search.
+    assert_int_equal(cp_calibration_write(&fit, &first, &error), CP_OK);
+    char report[16384];
+    read_report(&shop, report, sizeof report);
+    assert_non_null(strstr(report,
+                           "3 starts, the base and vehicles drawn around it (seed 5), and 2 "
+                           "offspring of the best"));
+    char path[256];
+    snprintf(path, sizeof path, "%s/twin.yaml.start1.fit.state", shop.folder);
+    assert_int_equal(access(path, F_OK), -1);
+    cp_calibration_destroy(&first);
+    cp_fit_destroy(&fit);
+    close_workshop(&shop);
+}
+
 // What is known of a car before the fit holds an unknown back as strongly as the fit file says.
 static void what_is_known_holds_back(void **state)
 {
@@ -322,6 +386,16 @@ static void errors_name_line_and_field(void **state)
         {"generations: 0\nstarts: 4\nslope_evaluations: 23\n"
          "unknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",
          ":8: slope_evaluations must be at least 24 for 4 starts without generations, found 23"},
+        {"offspring: 4\nstarts: 3\nunknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",
+         ":6: offspring goes with generations: 0 and at least 2 starts, found 150 generations and "
+         "3 "
+         "starts"},
+        {"folds: 7\nunknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",
+         ":6: folds must be 0, or from 2 to the 6 configurations of the reference, found 7"},
+        {"neighbour_folds: 1\nunknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",
+         ":6: neighbour_folds must be 0, or from 2 to the 6 configurations"},
+        {"folds: some\nunknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",
+         ":6: folds must be a number from 0 to 50, found 'some'"},
     };
     for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
         workshop shop = open_workshop(CASES[k].lines);
@@ -340,6 +414,7 @@ int main(void)
         cmocka_unit_test(a_twin_is_found_again),
         cmocka_unit_test(slopes_lead_to_the_twin),
         cmocka_unit_test(drawn_starts_lead_to_the_twin),
+        cmocka_unit_test(offspring_lead_to_the_twin_whether_killed_or_not),
         cmocka_unit_test(what_is_known_holds_back),
         cmocka_unit_test(bounds_of_the_pulse_count),
         cmocka_unit_test(threads_do_not_change_the_result),

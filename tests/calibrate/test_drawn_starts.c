@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { DIMENSION = 3 };
+enum { DIMENSION = 8 };
 
 /* What a search does, counted. */
 typedef struct ground {
@@ -63,9 +63,9 @@ static cp_status descend(void *context, size_t evaluations, double *point)
     return CP_OK;
 }
 
-static const double KNOWN[DIMENSION] = {0.35, 0.4, 0.6};
+static const double KNOWN[DIMENSION] = {0.35, 0.4, 0.6, 0.2, 0.5, 0.45, 0.3, 0.65};
 
-static double search(ground *g, size_t count, uint32_t seed, double *point)
+static double breed(ground *g, size_t count, size_t offspring, uint32_t seed, double *point)
 {
     cp_error error = {0};
     cp_drawn_starts starts = {.value = value,
@@ -74,10 +74,16 @@ static double search(ground *g, size_t count, uint32_t seed, double *point)
                               .known = KNOWN,
                               .dimension = DIMENSION,
                               .count = count,
-                              .evaluations = 400,
+                              .offspring = offspring,
+                              .evaluations = 1600,
                               .seed = seed};
     assert_int_equal(cp_drawn_starts_search(&starts, point, &error), CP_OK);
     return value(g, point, DIMENSION);
+}
+
+static double search(ground *g, size_t count, uint32_t seed, double *point)
+{
+    return breed(g, count, 0, seed, point);
 }
 
 static void one_start_goes_down_from_what_is_known(void **state)
@@ -87,7 +93,7 @@ static void one_start_goes_down_from_what_is_known(void **state)
     double found[DIMENSION], expected[DIMENSION];
     search(&searched, 1, 5, found);
     memcpy(expected, KNOWN, sizeof expected);
-    assert_int_equal(descend(&alone, 400, expected), CP_OK);
+    assert_int_equal(descend(&alone, 1600, expected), CP_OK);
     assert_memory_equal(found, expected, sizeof found);
     assert_int_equal(searched.descents, 1);
 }
@@ -108,12 +114,58 @@ static void drawn_starts_find_a_deeper_valley(void **state)
 static void quarters_are_left_and_go_further(void **state)
 {
     (void)state;
-    const size_t EXPECTED[] = {50, 50, 50, 50, 50, 50, 100, 100, 400};
+    const size_t EXPECTED[] = {200, 200, 200, 200, 200, 200, 400, 400, 1600};
     ground g = {0};
     double point[DIMENSION];
     search(&g, 6, 5, point);
     assert_int_equal(g.descents, sizeof EXPECTED / sizeof *EXPECTED);
+    assert_int_equal(g.descents, cp_drawn_starts_descents(6, 0));
     assert_memory_equal(g.evaluations, EXPECTED, sizeof EXPECTED);
+}
+
+// Every start and every child with an eighth of the evaluations, the best of all with all.
+static void offspring_go_down_like_their_parents(void **state)
+{
+    (void)state;
+    const size_t EXPECTED[] = {200, 200, 200, 200, 200, 200, 200, 1600};
+    ground g = {0};
+    double point[DIMENSION];
+    breed(&g, 3, 4, 5, point);
+    assert_int_equal(g.descents, sizeof EXPECTED / sizeof *EXPECTED);
+    assert_int_equal(g.descents, cp_drawn_starts_descents(3, 4));
+    assert_memory_equal(g.evaluations, EXPECTED, sizeof EXPECTED);
+    assert_memory_equal(g.first_point, KNOWN, sizeof KNOWN);
+}
+
+// From several seeds: children come deeper than as many starts drawn once more, and with no more
+// work they never end above the best of their parents.
+static void offspring_find_what_starts_do_not(void **state)
+{
+    (void)state;
+    int deeper = 0, shallower = 0;
+    for (uint32_t seed = 1; seed <= 20; seed++) {
+        ground g[3] = {{0}};
+        double point[DIMENSION];
+        double parents = search(&g[0], 10, seed, point);
+        double bred = breed(&g[1], 10, 20, seed, point);
+        double drawn = search(&g[2], 30, seed, point);
+        assert_true(bred <= parents + 1e-3);
+        deeper += bred < drawn - 1e-3;
+        shallower += bred > drawn + 1e-3;
+    }
+    assert_true(deeper > 2 * shallower);
+}
+
+static void offspring_are_the_same_bits_by_the_same_seed(void **state)
+{
+    (void)state;
+    ground g[3] = {{0}};
+    double one[DIMENSION], again[DIMENSION], other[DIMENSION];
+    breed(&g[0], 4, 6, 5, one);
+    breed(&g[1], 4, 6, 5, again);
+    breed(&g[2], 4, 6, 6, other);
+    assert_memory_equal(one, again, sizeof one);
+    assert_memory_not_equal(one, other, sizeof one);
 }
 
 static void a_seed_gives_the_same_bits(void **state)
@@ -141,7 +193,7 @@ static void a_descent_that_fails_ends_the_search(void **state)
                               .known = KNOWN,
                               .dimension = DIMENSION,
                               .count = 5,
-                              .evaluations = 400,
+                              .evaluations = 1600,
                               .seed = 5};
     assert_int_equal(cp_drawn_starts_search(&starts, point, &error), CP_RUN_FAILED);
     assert_int_equal(g.descents, 3);
@@ -153,6 +205,9 @@ int main(void)
         cmocka_unit_test(one_start_goes_down_from_what_is_known),
         cmocka_unit_test(drawn_starts_find_a_deeper_valley),
         cmocka_unit_test(quarters_are_left_and_go_further),
+        cmocka_unit_test(offspring_go_down_like_their_parents),
+        cmocka_unit_test(offspring_find_what_starts_do_not),
+        cmocka_unit_test(offspring_are_the_same_bits_by_the_same_seed),
         cmocka_unit_test(a_seed_gives_the_same_bits),
         cmocka_unit_test(a_descent_that_fails_ends_the_search),
     };

@@ -96,7 +96,7 @@ static void errors_name_line_and_field(void **state)
         {"objective: pulse\npulses:\n  - {file: pulse.csv, channels: [7]}\n",
          "pulses[0].channels goes with ev5"},
         {"objective: pulse\npulses:\n  - {ev5: ., channels: [7, left]}\n",
-         "pulses[0].channels[1] must be a number, found 'left'"},
+         "pulses[0].channels[1] must be a number from 1 to 99999, found 'left'"},
         {"objective: pulse\npulses:\n  - {ev5: ., channels: [7.5]}\n", "must be a whole number"},
         {"objective: pulse\npulses:\n  - {ev5: ., channels: [8]}\n", ":9: pulses[0]: "},
         {"objective: pulse\npulses:\n  - {file: pulse.csv, weight: 0}\n",

@@ -104,6 +104,21 @@ static void a_bottom_outside_ends_on_the_bound(void **state)
     assert_near(value, misfit(&c, point, 2, best, POINTS), 0.0);
 }
 
+static void the_robust_mean_lies_between_the_two_means(void **state)
+{
+    (void)state;
+    const double MISFIT[] = {3.0, -0.5, 0.0, 1.0, -2.0};
+    double absolute = 6.5 / 5.0, root_mean_square = sqrt(14.25 / 5.0);
+    assert_near(cp_robust_mean(MISFIT, 5, 1e-6), absolute, 1e-5);
+    assert_near(cp_robust_mean(MISFIT, 5, 1e3), root_mean_square, 1e-5);
+    double between = cp_robust_mean(MISFIT, 5, 1.0);
+    assert_true(between > absolute && between < root_mean_square);
+
+    // Where all are the same it is them.
+    const double SAME[] = {0.7, -0.7, 0.7};
+    assert_near(cp_robust_mean(SAME, 3, 0.3), 0.7, 1e-12);
+}
+
 static void fewer_residuals_than_unknowns_are_refused(void **state)
 {
     (void)state;
@@ -122,6 +137,7 @@ int main(void)
         cmocka_unit_test(it_finds_the_curve_in_few_evaluations),
         cmocka_unit_test(a_few_spoilt_samples_do_not_pull_it_away),
         cmocka_unit_test(a_bottom_outside_ends_on_the_bound),
+        cmocka_unit_test(the_robust_mean_lies_between_the_two_means),
         cmocka_unit_test(fewer_residuals_than_unknowns_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -96,8 +96,8 @@ static void numbers_are_whole_texts_in_range(void **state)
     assert_int_equal(
         cp_yaml_number(&file, "parts[1].mass_kg", car->parts[1].mass_kg, 0, 100, &mass_kg, &error),
         CP_BAD_INPUT);
-    assert_non_null(
-        strstr(error.text, ":6: parts[1].mass_kg must be a number, found '1.5garbage'"));
+    assert_non_null(strstr(
+        error.text, ":6: parts[1].mass_kg must be a number from 0 to 100, found '1.5garbage'"));
     assert_near(mass_kg, 260.0, 0.0);
     assert_int_equal(cp_yaml_number(&file, "x", NULL, 0, 1, &mass_kg, &error), CP_OK);
     cp_yaml_close(&file);

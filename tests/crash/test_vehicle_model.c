@@ -80,7 +80,7 @@ static void every_error_names_line_and_field(void **state)
     (void)state;
     expect_refusal("", ":", "empty");
     expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: heavy}\n",
-                   ":3:", "must be a number, found 'heavy'");
+                   ":3:", "must be a number from 500 to 5000, found 'heavy'");
     expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: nan}\n", ":3:", "'nan'");
     expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: 20}\n",
                    ":3:", "between 500 and 5000, found 20");

@@ -107,7 +107,7 @@ static const struct {
      "study.yaml:22: variants[1].functions[0].parameters.ttc_s must be between 0.1 and 5, found "
      "-1"},
     {"ttc_s: 1.5", "ttc_s: nan", "study.yaml:22: variants[1].functions[0].parameters.ttc_s"},
-    {"ttc_s: 1.5", "ttc_s: 1.5garbage", "must be a number, found '1.5garbage'"},
+    {"ttc_s: 1.5", "ttc_s: 1.5garbage", "must be a number from 0.1 to 5, found '1.5garbage'"},
     {"ttc_s: 1.5", "ttc_s: [1, 2]", "study.yaml:22: variants[1].functions[0].parameters.ttc_s"},
     {"ttc_s: 1.5", "ttcs: 1.5", "parameters.ttcs is not a parameter of aeb; it has"},
     {"deceleration_m_s2: 7", "ttc_s: 2", "parameters.ttc_s is given twice"},

@@ -185,7 +185,7 @@ static void mistakes_are_named(void **state)
         {"{parameter: variants.aeb.tcc_s, values: [1]}",
          "ends in no parameter, found 'tcc_s'; there are aeb.penetration_1, aeb.ttc_s"},
         {"{parameter: variants.aeb.ttc_s, values: [1, 1.5garbage]}",
-         "sweep[0].values[1] must be a number, found '1.5garbage'"},
+         "sweep[0].values[1] must be a number from 0.1 to 5, found '1.5garbage'"},
         {"{parameter: variants.aeb.ttc_s, values: [1, -3]}",
          "study.yaml:30: sweep[0].values[1] must be between"},
         {"{parameter: variants.aeb.ttc_s, values: [1, 2, 1.0]}", "sweep[0].values[2] repeats 1.0"},

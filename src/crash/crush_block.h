@@ -7,7 +7,9 @@
 /* A massless part of the front that is pushed in where something presses on it and stays there:
  * outboard corner (fender, wheel), upper load path (radiator support, hood, upper rails). Its face
  * moves along the car's x axis only; sideways it passes on what it meets. It carries what presses
- * on it elastically (by the stiffness of the contact) up to its resistance, then gives way.
+ * on it elastically (by the stiffness of the contact) up to its resistance, then gives way. Used
+ * up, it rests on the passenger cell: its stop is the stiffness of the body there, and its face
+ * goes on into the cell.
  *
  * Resistance at slip d within a step dt: F(s + d) + (c + kappa F) d / dt, F the loading curve of a
  * crush element (its collapse only for the rate), c a damper, kappa the rate share. */

@@ -203,9 +203,9 @@ static void join_bodies(cp_car *car, dWorldID world, const layout *at,
 }
 
 static cp_crush_law crush_law(const cp_vehicle_model *m, double begin_m, double begin_kn,
-                              double end_m, double end_kn)
+                              double end_m, double end_kn, double stop_kn_m)
 {
-    double stop_n_m = 1e3 * m->stop_stiffness_kn_m;
+    double stop_n_m = 1e3 * stop_kn_m;
     double unload_n_m = m->unload_factor_1 * 1e3 * begin_kn / begin_m;
     return (cp_crush_law){.begin_m = begin_m,
                           .begin_n = 1e3 * begin_kn,
@@ -254,12 +254,12 @@ static void set_force_elements(cp_car *car, const layout *at, const cp_vec2 plac
 {
     const cp_vehicle_model *m = car->model;
     const cp_vec2 centre = {0.0, 0.0};
-    cp_crush_law longitudinal_law =
-        crush_law(m, m->longitudinal_collapse_begin_m, m->longitudinal_collapse_begin_kn,
-                  m->longitudinal_collapse_end_m, m->longitudinal_collapse_end_kn);
-    cp_crush_law box_law =
-        crush_law(m, m->crash_box_collapse_begin_m, m->crash_box_collapse_begin_kn,
-                  m->crash_box_collapse_end_m, m->crash_box_collapse_end_kn);
+    cp_crush_law longitudinal_law = crush_law(
+        m, m->longitudinal_collapse_begin_m, m->longitudinal_collapse_begin_kn,
+        m->longitudinal_collapse_end_m, m->longitudinal_collapse_end_kn, m->stop_stiffness_kn_m);
+    cp_crush_law box_law = crush_law(m, m->crash_box_collapse_begin_m,
+                                     m->crash_box_collapse_begin_kn, m->crash_box_collapse_end_m,
+                                     m->crash_box_collapse_end_kn, m->stop_stiffness_kn_m);
     cp_crush_law bay_law = engine_bay_law(m);
 
     for (int side = 0; side < 2; side++) {
@@ -338,15 +338,15 @@ static void set_blocks(cp_car *car, const layout *at, double root_m)
     stripped_part corner = {.strips = (int)m->corner_strips_1,
                             .law = crush_law(m, m->corner_collapse_begin_m,
                                              m->corner_collapse_begin_kn, m->corner_collapse_end_m,
-                                             m->corner_collapse_end_kn),
+                                             m->corner_collapse_end_kn, m->body_stiffness_kn_m),
                             .front_m = rear_m + at->corner_length_m,
                             .rear_m = rear_m,
                             .inner_m = at->upper_width_m,
                             .outer_m = 0.5 * m->width_m};
     stripped_part upper = {.strips = (int)m->upper_strips_1,
-                           .law =
-                               crush_law(m, m->upper_collapse_begin_m, m->upper_collapse_begin_kn,
-                                         m->upper_collapse_end_m, m->upper_collapse_end_kn),
+                           .law = crush_law(m, m->upper_collapse_begin_m,
+                                            m->upper_collapse_begin_kn, m->upper_collapse_end_m,
+                                            m->upper_collapse_end_kn, m->body_stiffness_kn_m),
                            .front_m = rear_m + at->upper_length_m,
                            .rear_m = rear_m,
                            .inner_m = 0.0,
@@ -594,11 +594,12 @@ cp_outline cp_car_outline_now(const cp_car *car, int index)
     const cp_car_outline *outline = &car->outline[index];
     dBodyID body = car->body[outline->body];
 
-    // A block's face has been pushed in; its rear stays.
+    // A block's face has been pushed in; its rear stays until nothing but its rounding is left,
+    // which then goes into the passenger cell.
     double pushed_m = outline->block >= 0 ? car->block[outline->block].s_m : 0.0;
     double shorter_m = fmin(0.5 * pushed_m, outline->half_length_m - outline->radius_m);
     cp_vec2 centre_m = outline->centre_m;
-    centre_m.x -= shorter_m;
+    centre_m.x -= pushed_m - shorter_m;
     return (cp_outline){.centre_m = body_point(body, centre_m),
                         .along = body_direction(body, outline->along),
                         .half_length_m = outline->half_length_m - shorter_m,

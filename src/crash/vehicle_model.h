@@ -74,7 +74,7 @@
     X(unload_factor_1, "1", 3, 1, 30,                                                              \
       "unloading stiffness over loading stiffness of every element")                               \
     X(stop_stiffness_kn_m, "kN/m", 4000, 200, 50000,                                               \
-      "every element beyond the end of its collapse")                                              \
+      "members and crash boxes beyond the end of their collapse")                                  \
     X(member_damping_kn_s_m, "kN s/m", 1, 0, 10, "along every prismatic joint")                    \
     X(crush_rate_s_m, "s/m", 0, 0, 0.05,                                                           \
       "share by which every collapse force grows per m/s of crush rate (strain rate)")             \
@@ -82,7 +82,7 @@
     X(contact_damping_1, "1", 0.3, 0, 1,                                                           \
       "share of critical damping of front contacts at a cross member half")                        \
     X(body_stiffness_kn_m, "kN/m", 700, 50, 20000,                                                 \
-      "sides, rear and firewall as struck by another")                                             \
+      "sides, rear and firewall as struck by another, and behind used up corners and upper parts") \
     X(body_damping_1, "1", 0.7, 0, 3,                                                              \
       "share of critical damping of body contacts at half the car's mass")                         \
     X(corner_radius_m, "m", 0.06, 0.01, 0.3, "rounding of the contact outlines")                   \

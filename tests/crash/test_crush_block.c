@@ -131,6 +131,27 @@ static void half_of_the_width_is_half_of_the_force(void **state)
     }
 }
 
+// Blocks used up after 0.1 m at next to no force rest on the passenger cell, which gives way by its
+// own stiffness behind each half and keeps the dent: m v^2 / 2 = F s + k (s - 0.1)^2, k of one
+// half.
+static void behind_used_up_blocks_the_cell_gives_way(void **state)
+{
+    (void)state;
+    double v = 4.0;
+    for (double k_kn_m = 350.0; k_kn_m <= 1400.0; k_kn_m *= 2.0) {
+        cp_vehicle_model car = car_of_upper_load_path(2);
+        car.upper_collapse_begin_kn = 10.0;
+        car.upper_collapse_end_kn = 10.0;
+        car.upper_collapse_end_m = 0.1;
+        car.body_stiffness_kn_m = k_kn_m;
+        double energy_j = 0.5 * car.mass_kg * v * v - 30e3 * 0.1;
+        double beyond_m = (-30e3 + sqrt(30e3 * 30e3 + 4e3 * k_kn_m * energy_j)) / (2e3 * k_kn_m);
+        double expected_m = 0.1 + beyond_m, found_m = deepest_m(&car, v);
+        assert_true(beyond_m > 0.05);
+        assert_true(found_m > 0.92 * expected_m && found_m < 1.05 * expected_m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -139,6 +160,7 @@ int main(void)
         cmocka_unit_test(settling_counts_every_joule_once),
         cmocka_unit_test(a_car_is_stopped_by_its_blocks_alone),
         cmocka_unit_test(half_of_the_width_is_half_of_the_force),
+        cmocka_unit_test(behind_used_up_blocks_the_cell_gives_way),
     };
     return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

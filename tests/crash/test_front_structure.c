@@ -120,6 +120,35 @@ static void a_mass_on_constant_force_stops_by_energy(void **state)
     assert_near(stop_s, mass_kg * speed_m_s / 3e5, 2e-4);
 }
 
+// The face of a block is where its crush has brought it, also when that is more than the front has
+// room for: then it is in the passenger cell, and nothing is left standing before it.
+static void the_face_of_a_block_goes_as_far_as_its_crush(void **state)
+{
+    (void)state;
+    cp_vehicle_model model = cp_vehicle_model_default();
+    model.corner_strips_1 = 2;
+    cp_body_state state_at_rest = {0};
+    dWorldID world = dWorldCreate();
+    cp_car car;
+    build(&car, world, &model, &state_at_rest);
+    for (int index = CP_OUTLINE_BLOCKS; index < car.outline_count; index++) {
+        cp_crush_block *block = &car.block[car.outline[index].block];
+        cp_outline whole = cp_car_outline_now(&car, index);
+        double face_m = whole.centre_m.x + whole.half_length_m;
+        for (double crush_m = 0.0; crush_m < 1.3; crush_m += 0.1) {
+            block->s_m = crush_m;
+            cp_outline now = cp_car_outline_now(&car, index);
+            assert_near(now.centre_m.x + now.half_length_m, face_m - crush_m, 1e-12);
+            assert_near(now.half_width_m, whole.half_width_m, 0.0);
+            assert_true(now.half_length_m >= now.radius_m);
+            double rear_m = now.centre_m.x - now.half_length_m;
+            double rear_whole_m = whole.centre_m.x - whole.half_length_m;
+            assert_true(rear_m < rear_whole_m + 1e-12);
+        }
+    }
+    dWorldDestroy(world);
+}
+
 static void masses_that_do_not_fit_are_refused(void **state)
 {
     (void)state;
@@ -141,6 +170,7 @@ int main(void)
         cmocka_unit_test(an_undisturbed_car_stays_rigid_and_in_its_plane),
         cmocka_unit_test(a_mass_on_the_elastic_part_follows_the_quarter_cosine),
         cmocka_unit_test(a_mass_on_constant_force_stops_by_energy),
+        cmocka_unit_test(the_face_of_a_block_goes_as_far_as_its_crush),
         cmocka_unit_test(masses_that_do_not_fit_are_refused),
     };
     return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);

@@ -112,12 +112,24 @@ static cp_status print_progress(cp_store *store, cp_format format, cp_error *err
     return status;
 }
 
+// Long ones by their first line and their last, which says what ended it.
+static void print_reason(const char *reason)
+{
+    enum { LONG = 300 };
+    const char *last = strrchr(reason, '\n');
+    if (strlen(reason) <= LONG || last == NULL)
+        printf("%s\n", reason);
+    else
+        printf("%.*s\n    ...\n    %s\n", (int)strcspn(reason, "\n"), reason, last + 1);
+}
+
 static cp_status print_failure(void *context, const cp_row *row, cp_error *error)
 {
     (void)error;
     (void)context;
-    printf("  %s, %s, replication %lld: %.300s\n", row->cell[0].text, row->cell[1].text,
-           (long long)row->cell[2].integer, row->cell[3].text);
+    printf("  %s, %s, replication %lld: ", row->cell[0].text, row->cell[1].text,
+           (long long)row->cell[2].integer);
+    print_reason(row->cell[3].text);
     return CP_OK;
 }
 
@@ -131,13 +143,15 @@ static cp_status print_failures(cp_store *store, cp_error *error)
         return status;
     printf("\nfailed%s:\n", failed > 5 ? ", the first five" : "");
     cp_query_handler handler = {.row = print_failure};
-    return cp_query(store,
-                    "SELECT s.name, v.name, r.number, (SELECT message FROM attempt AS a WHERE "
-                    "a.replication_id = r.id ORDER BY a.number DESC LIMIT 1) FROM replication AS r "
-                    "JOIN scenario AS s ON s.id = r.scenario_id JOIN variant AS v ON v.id = "
-                    "r.variant_id WHERE r.status = 'failed' ORDER BY s.number, v.number, r.number "
-                    "LIMIT 5",
-                    NULL, 0, &handler, error);
+    return cp_query(
+        store,
+        "SELECT s.name, v.name, r.number, coalesce((SELECT message FROM attempt AS a WHERE "
+        "a.replication_id = r.id ORDER BY a.number DESC LIMIT 1), 'it left no message') "
+        "FROM replication AS r "
+        "JOIN scenario AS s ON s.id = r.scenario_id JOIN variant AS v ON v.id = "
+        "r.variant_id WHERE r.status = 'failed' ORDER BY s.number, v.number, r.number "
+        "LIMIT 5",
+        NULL, 0, &handler, error);
 }
 
 static cp_status print_summary(cp_store *store, cp_error *error)

@@ -203,6 +203,14 @@ def hanging_worker(folder, study, undisturbed):
     says(result, "1 of 8 replications failed", "no end after 30 s", "Step #12.50 is taking its time")
     status = run("status", db).stdout
     assert "7 of 8 replications done" in status and "no end after 30 s" in status, status
+
+    # Of many last words the first line and the last are told: the last says what ended it.
+    long_words = "\n".join(["first", *["Warning: one of many"] * 40, "Assertion failed"])
+    with sqlite3.connect(db) as connection:
+        connection.execute("UPDATE attempt SET message = ? WHERE outcome = 'failed'", (long_words,))
+    status = run("status", db).stdout
+    assert ": first\n    ...\n    Assertion failed\n" in status, status
+    assert "one of many" not in status, status
     run("run", study, "--db", db)
     crossing_study.assert_same(db, undisturbed)
 

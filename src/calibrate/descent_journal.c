@@ -3,53 +3,44 @@
 
 #include "core/file.h"
 
-#include <errno.h>
-#include <math.h>
+#include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+// A row: evaluations, value before, point.
+enum { EVALUATIONS, BEFORE, POINT };
+
+static double *row_of(const cp_descent_journal *journal, size_t descent)
+{
+    return journal->row + descent * (POINT + journal->dimension);
+}
+
 // Room for one more descent.
 static cp_status grow(cp_descent_journal *journal, cp_error *error)
 {
-    size_t rows = journal->count + 1, n = journal->dimension;
-    size_t *evaluation = realloc(journal->evaluation, rows * sizeof *evaluation);
-    if (evaluation != NULL)
-        journal->evaluation = evaluation;
-    double *before = realloc(journal->before, rows * sizeof *before);
-    if (before != NULL)
-        journal->before = before;
-    double *point = realloc(journal->point, rows * n * sizeof *point);
-    if (point != NULL)
-        journal->point = point;
-    if (evaluation == NULL || before == NULL || point == NULL)
+    size_t row_size = (POINT + journal->dimension) * sizeof *journal->row;
+    double *row = realloc(journal->row, (journal->count + 1) * row_size);
+    if (row == NULL)
         return cp_fail_memory(error, journal->path);
+    journal->row = row;
     return CP_OK;
 }
 
-static bool read_number(char **text, double *number)
-{
-    char *end = *text;
-    *number = strtod(*text, &end);
-    bool found = end != *text && isfinite(*number);
-    *text = end;
-    return found;
-}
-
 // One line; false: not what this program writes.
-static bool read_line(cp_descent_journal *journal, char *line)
+static bool read_line(const cp_descent_journal *journal, const char *line)
 {
-    size_t row = journal->count;
-    char *end = line;
-    errno = 0;
-    journal->evaluation[row] = strtoul(line, &end, 10);
-    bool sound = end != line && errno == 0 && read_number(&end, &journal->before[row]);
-    for (size_t k = 0; sound && k < journal->dimension; k++) {
-        double *coordinate = &journal->point[row * journal->dimension + k];
-        sound = read_number(&end, coordinate) && *coordinate >= 0.0 && *coordinate <= 1.0;
+    double *row = row_of(journal, journal->count);
+    for (size_t k = 0; k < POINT + journal->dimension; k++) {
+        char *end = NULL;
+        row[k] = strtod(line, &end);
+        double largest = k < POINT ? DBL_MAX : 1.0;
+        if (end == line || !(row[k] >= 0.0 && row[k] <= largest))
+            return false;
+        line = end;
     }
-    return sound && *end == '\0';
+    return *line == '\0';
 }
 
 cp_status cp_descent_journal_open(cp_descent_journal *journal, const char *path, size_t dimension,
@@ -84,14 +75,14 @@ cp_status cp_descent_journal_recall(cp_descent_journal *journal, size_t evaluati
     *known = journal->next < journal->count;
     if (!*known)
         return CP_OK;
-    size_t row = journal->next, n = journal->dimension;
-    if (journal->evaluation[row] != evaluations || journal->before[row] != before)
+    const double *row = row_of(journal, journal->next);
+    if (row[EVALUATIONS] != (double)evaluations || row[BEFORE] != before)
         return cp_fail(error, CP_BAD_INPUT,
-                       "%s:%zu: is of another fit (descent with %zu evaluations from a value of "
+                       "%s:%zu: is of another fit (descent with %.0f evaluations from a value of "
                        "%.9g, here %zu from %.9g); remove the file to start anew",
-                       journal->path, row + 1, journal->evaluation[row], journal->before[row],
-                       evaluations, before);
-    memcpy(point, &journal->point[row * n], n * sizeof *point);
+                       journal->path, journal->next + 1, row[EVALUATIONS], row[BEFORE], evaluations,
+                       before);
+    memcpy(point, row + POINT, journal->dimension * sizeof *point);
     journal->next++;
     return CP_OK;
 }
@@ -103,10 +94,11 @@ static cp_status write_file(const cp_descent_journal *journal, cp_error *error)
     FILE *file = open_memstream(&text, &size);
     if (file == NULL)
         return cp_fail_memory(error, journal->path);
-    for (size_t row = 0; row < journal->count; row++) {
-        fprintf(file, "%zu %a", journal->evaluation[row], journal->before[row]);
-        for (size_t k = 0; k < journal->dimension; k++)
-            fprintf(file, " %a", journal->point[row * journal->dimension + k]);
+    for (size_t descent = 0; descent < journal->count; descent++) {
+        const double *row = row_of(journal, descent);
+        fprintf(file, "%.0f", row[EVALUATIONS]);
+        for (size_t k = BEFORE; k < POINT + journal->dimension; k++)
+            fprintf(file, " %a", row[k]);
         fputc('\n', file);
     }
     bool lost = ferror(file) != 0;
@@ -123,18 +115,16 @@ cp_status cp_descent_journal_add(cp_descent_journal *journal, size_t evaluations
     cp_status status = grow(journal, error);
     if (status != CP_OK)
         return status;
-    size_t row = journal->count++, n = journal->dimension;
-    journal->evaluation[row] = evaluations;
-    journal->before[row] = before;
-    memcpy(&journal->point[row * n], point, n * sizeof *point);
+    double *row = row_of(journal, journal->count++);
+    row[EVALUATIONS] = (double)evaluations;
+    row[BEFORE] = before;
+    memcpy(row + POINT, point, journal->dimension * sizeof *point);
     journal->next = journal->count;
     return write_file(journal, error);
 }
 
 void cp_descent_journal_close(cp_descent_journal *journal)
 {
-    free(journal->evaluation);
-    free(journal->before);
-    free(journal->point);
+    free(journal->row);
     *journal = (cp_descent_journal){0};
 }

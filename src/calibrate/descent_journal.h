@@ -14,11 +14,9 @@
 typedef struct cp_descent_journal {
     char path[4096];
     size_t dimension;
-    size_t count;       /* of descents known */
-    size_t next;        /* the one to be asked for next */
-    size_t *evaluation; /* budget of every descent */
-    double *before;     /* value each began with */
-    double *point;      /* dimension coordinates each came to */
+    size_t count; /* of descents known */
+    size_t next;  /* the one to be asked for next */
+    double *row;  /* owned, as in the file: 2 + dimension numbers a descent */
 } cp_descent_journal;
 
 /* From the file at path if there is one, else empty. The caller closes, also after an error.

@@ -52,11 +52,6 @@ static double cost_of(const double *residual, size_t count, double soft)
     return cost;
 }
 
-static double robust_cost(const cp_least_squares *s, const double *residual)
-{
-    return cost_of(residual, s->count, s->soft);
-}
-
 double cp_robust_mean(const double *residual, size_t count, double soft)
 {
     // The cost of one, solved for the misfit.
@@ -165,7 +160,7 @@ static bool try_step(descent *work)
     const cp_least_squares *s = work->settings;
     if (propose(work)) {
         evaluate(work, work->trial, work->trial_residual);
-        double cost = robust_cost(s, work->trial_residual);
+        double cost = cost_of(work->trial_residual, s->count, s->soft);
         double quality = (work->cost - cost) / fmax(promised_gain(work), 1e-300);
         if (cost < work->cost) {
             // The point left stays in trial, its residuals in trial_residual.
@@ -204,7 +199,7 @@ static void descend(descent *work)
     const cp_least_squares *s = work->settings;
     const double least_gain = 1e-4;
     evaluate(work, work->here, work->residual);
-    work->cost = robust_cost(s, work->residual);
+    work->cost = cost_of(work->residual, s->count, s->soft);
     work->raise = 2.0;
     static const double SIZE[] = {1.0, 3.0, 0.3};
     size_t stalled = 0;

@@ -388,8 +388,7 @@ static void errors_name_line_and_field(void **state)
          ":8: slope_evaluations must be at least 24 for 4 starts without generations, found 23"},
         {"offspring: 4\nstarts: 3\nunknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",
          ":6: offspring goes with generations: 0 and at least 2 starts, found 150 generations and "
-         "3 "
-         "starts"},
+         "3 starts"},
         {"folds: 7\nunknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",
          ":6: folds must be 0, or from 2 to the 6 configurations of the reference, found 7"},
         {"neighbour_folds: 1\nunknowns:\n  - {name: mass_kg, min: 1500, max: 1600}\n",

@@ -137,8 +137,8 @@ static void offspring_go_down_like_their_parents(void **state)
     assert_memory_equal(g.first_point, KNOWN, sizeof KNOWN);
 }
 
-// From several seeds: children come deeper than as many starts drawn once more, and with no more
-// work they never end above the best of their parents.
+// From several seeds: children come deeper than as many more drawn starts, and never end above what
+// their parents alone come to.
 static void offspring_find_what_starts_do_not(void **state)
 {
     (void)state;

@@ -12,7 +12,7 @@ import pathlib
 import subprocess
 
 HERE = pathlib.Path(__file__).resolve().parent
-COLUMNS = ("class", "title", "vehicle", "quantity", "unit", "cases", "reference", "model", "bias",
+COLUMNS = ("class", "title", "vehicle", "quantity", "label", "unit", "cases", "reference", "model", "bias",
            "mean_abs", "max_abs", "error_unit", "inside_1", "bar", "result", "note")
 
 

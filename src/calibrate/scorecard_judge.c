@@ -164,18 +164,22 @@ static bool keeps_bar(const cp_scorecard_row *row)
            (!bar->last_is_highest || is_last_highest(row));
 }
 
-// Where a bar on the run of the values breaks first, or worst.
-static void note_run(cp_scorecard_row *row)
+// What the means of a row do not show: its worst step, or its extreme value where there is no
+// reference.
+static void note_extreme(cp_scorecard_row *row)
 {
-    const cp_suite_bar *bar = &row->comparison->bar;
+    const cp_suite_comparison *comparison = row->comparison;
+    const cp_suite_bar *bar = &comparison->bar;
     const cp_scorecard_case *cases = row->cases;
-    size_t step = 0, highest = 0;
+    size_t step = 0, highest = 0, lowest = 0;
     for (size_t k = 1; k < row->case_count; k++) {
         if (step == 0 || fabs(cases[k].model - cases[k - 1].model) >
                              fabs(cases[step].model - cases[step - 1].model))
             step = k;
         if (cases[k].model > cases[highest].model)
             highest = k;
+        if (cases[k].model < cases[lowest].model)
+            lowest = k;
     }
     if (row->note[0] != '\0' || row->case_count < 2)
         return;
@@ -185,6 +189,12 @@ static void note_run(cp_scorecard_row *row)
     else if (bar->last_is_highest)
         snprintf(row->note, sizeof row->note, "highest %.3g, %s; last %.3g", cases[highest].model,
                  cases[highest].label, cases[row->case_count - 1].model);
+    else if (comparison->high.count > 0 && comparison->low.count == 0)
+        snprintf(row->note, sizeof row->note, "highest %.4g, %s", cases[highest].model,
+                 cases[highest].label);
+    else if (comparison->low.count > 0 && comparison->high.count == 0)
+        snprintf(row->note, sizeof row->note, "lowest %.4g, %s", cases[lowest].model,
+                 cases[lowest].label);
 }
 
 // Error and place of one case.
@@ -210,7 +220,7 @@ cp_status cp_scorecard_judge(cp_scorecard_row *row, cp_error *error)
     sum_up_values(row, room);
     free(room);
     say_bar(row);
-    note_run(row);
+    note_extreme(row);
     row->verdict = row->bar[0] == '\0' ? CP_SCORECARD_NO_BAR
                    : keeps_bar(row)    ? CP_SCORECARD_KEPT
                                        : CP_SCORECARD_MISSED;

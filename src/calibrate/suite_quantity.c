@@ -7,15 +7,21 @@
 #include <string.h>
 
 const char *const CP_SUITE_QUANTITY_TEXT[CP_SUITE_QUANTITY_COUNT] = {
-#define TEXT(name, unit, what) #name,
+#define TEXT(name, unit, label, what) #name,
     CP_SUITE_QUANTITIES(TEXT)
 #undef TEXT
 };
 
 const char *const CP_SUITE_QUANTITY_UNIT[CP_SUITE_QUANTITY_COUNT] = {
-#define UNIT(name, unit, what) unit,
+#define UNIT(name, unit, label, what) unit,
     CP_SUITE_QUANTITIES(UNIT)
 #undef UNIT
+};
+
+const char *const CP_SUITE_QUANTITY_LABEL[CP_SUITE_QUANTITY_COUNT] = {
+#define LABEL(name, unit, label, what) label,
+    CP_SUITE_QUANTITIES(LABEL)
+#undef LABEL
 };
 
 // Crash test laboratories' double integration ends there.
@@ -82,17 +88,18 @@ static double restitution(const cp_crash_result *result)
     return loss_m_s / approach_m_s - 1.0;
 }
 
+// Until both crashes have ended, rebound included.
 static double wall_difference_pct(const cp_crash_result *pair, const cp_crash_result *wall)
 {
-    const double *of_pair_m_s = pair->pulse[0].channel[CP_CHANNEL_VX];
-    const double *of_wall_m_s = wall->pulse[0].channel[CP_CHANNEL_VX];
-    double largest_m_s = 0.0;
-    for (size_t k = 0; k < pair->pulse[0].sample_count && k < wall->pulse[0].sample_count; k++) {
-        largest_m_s = fmax(largest_m_s, fabs(of_pair_m_s[k] - of_wall_m_s[k]));
-        if (of_pair_m_s[k] <= 0.0 && of_wall_m_s[k] <= 0.0)
+    const cp_pulse *of_pair = &pair->pulse[0], *of_wall = &wall->pulse[0];
+    double end_s = fmax(pair->severity[0].end_s, wall->severity[0].end_s), largest_m_s = 0.0;
+    for (size_t k = 0; k < of_pair->sample_count && k < of_wall->sample_count; k++) {
+        if ((double)k * of_pair->sample_interval_s > end_s)
             break;
+        largest_m_s = fmax(largest_m_s, fabs(of_pair->channel[CP_CHANNEL_VX][k] -
+                                             of_wall->channel[CP_CHANNEL_VX][k]));
     }
-    return 100.0 * largest_m_s / of_wall_m_s[0];
+    return 100.0 * largest_m_s / of_wall->channel[CP_CHANNEL_VX][0];
 }
 
 double cp_suite_quantity_of(const cp_suite_look *look, const cp_crash_result *result)

@@ -6,29 +6,33 @@
 
 /* What a suite compares: a figure of one simulated crash that a crash test has too. Losses of
  * velocity are positive, sideways is positive away from the barrier, yaw towards it. X(name, unit,
- * what it is). Separation is the end of the crash of pulse/severity.h. */
+ * label for people, what it is). Separation is the end of the crash of pulse/severity.h. */
 #define CP_SUITE_QUANTITIES(X)                                                                     \
-    X(olc_g, "g", "occupant load criterion; 0 where it is left-censored")                          \
-    X(peak_g, "g", "largest deceleration along x, CFC60")                                          \
-    X(peak_force_kn, "kN", "the same times the car's mass")                                        \
-    X(crush_mm, "mm", "integral of v_x while it is positive, at most 300 ms")                      \
-    X(dvx_m_s, "m/s",                                                                              \
+    X(olc_g, "g", "OLC", "occupant load criterion; 0 where it is left-censored")                   \
+    X(peak_g, "g", "peak", "largest deceleration along x, CFC60")                                  \
+    X(peak_force_kn, "kN", "peak force", "the same times the car's mass")                          \
+    X(crush_mm, "mm", "crush", "integral of v_x while it is positive, at most 300 ms")             \
+    X(dvx_m_s, "m/s", "loss of v_x",                                                               \
       "loss of velocity along the car's x axis at an instant; the axes turn with "                 \
       "the car, as those of an accelerometer")                                                     \
-    X(dvy_away_m_s, "m/s", "velocity gained sideways at an instant, likewise")                     \
-    X(separation_dvx_m_s, "m/s", "loss of velocity at separation, axes of the first heading")      \
-    X(separation_dvy_m_s, "m/s", "velocity gained sideways at separation, likewise")               \
-    X(separation_vx_m_s, "m/s", "velocity left at separation, likewise")                           \
-    X(yaw_rate_deg_s, "deg/s", "change of yaw rate until separation")                              \
-    X(delta_v_m_s, "m/s", "amount of the change of velocity")                                      \
-    X(restitution_1, "1", "velocity of separation over velocity of approach, along x")             \
-    X(momentum_ratio_1, "1", "m delta-v of the first car over that of the second")                 \
-    X(wall_difference_pct, "%",                                                                    \
-      "equal cars against a wall: largest difference of v_x until "                                \
-      "standstill, of the speed")
+    X(dvy_away_m_s, "m/s", "v_y away", "velocity gained sideways at an instant, likewise")         \
+    X(separation_dvx_m_s, "m/s", "loss of v_x at separation",                                      \
+      "loss of velocity at separation, axes of the first heading")                                 \
+    X(separation_dvy_m_s, "m/s", "v_y away at separation",                                         \
+      "velocity gained sideways at separation, likewise")                                          \
+    X(separation_vx_m_s, "m/s", "v_x left at separation", "velocity left at separation, likewise") \
+    X(yaw_rate_deg_s, "deg/s", "yaw rate", "change of yaw rate until separation")                  \
+    X(delta_v_m_s, "m/s", "delta-v", "amount of the change of velocity")                           \
+    X(restitution_1, "1", "restitution",                                                           \
+      "velocity of separation over velocity of approach, along x")                                 \
+    X(momentum_ratio_1, "1", "ratio of m delta-v",                                                 \
+      "m delta-v of the first car over that of the second")                                        \
+    X(wall_difference_pct, "%", "difference to the wall",                                          \
+      "equal cars against a wall: largest difference of v_x, "                                     \
+      "rebound included, of the speed")
 
 typedef enum cp_suite_quantity {
-#define CP_SUITE_QUANTITY_NAME(name, unit, what) CP_SUITE_##name,
+#define CP_SUITE_QUANTITY_NAME(name, unit, label, what) CP_SUITE_##name,
     CP_SUITE_QUANTITIES(CP_SUITE_QUANTITY_NAME)
 #undef CP_SUITE_QUANTITY_NAME
         CP_SUITE_QUANTITY_COUNT
@@ -36,6 +40,7 @@ typedef enum cp_suite_quantity {
 
 extern const char *const CP_SUITE_QUANTITY_TEXT[CP_SUITE_QUANTITY_COUNT];
 extern const char *const CP_SUITE_QUANTITY_UNIT[CP_SUITE_QUANTITY_COUNT];
+extern const char *const CP_SUITE_QUANTITY_LABEL[CP_SUITE_QUANTITY_COUNT];
 
 /* By name; CP_SUITE_QUANTITY_COUNT when there is none. */
 cp_suite_quantity cp_suite_quantity_find(const char *name);

@@ -120,10 +120,12 @@ static json_t *row_json(const cp_scorecard_row *row, bool list_cases)
 {
     bool empty = row->case_count == 0;
     json_t *json = json_pack(
-        "{s:s, s:s, s:s, s:s, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:s, s:s, "
+        "{s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:s, "
+        "s:s, "
         "s:s}",
         "class", row->class->name, "title", row->class->title, "vehicle", row->vehicle, "quantity",
-        row->quantity, "unit", unit_of(row), "cases", (json_int_t)row->case_count, "reference",
+        row->quantity, "label", CP_SUITE_QUANTITY_LABEL[row->comparison->quantity], "unit",
+        unit_of(row), "cases", (json_int_t)row->case_count, "reference",
         real_json(empty ? NAN : row->reference), "model", real_json(empty ? NAN : row->model),
         "bias", real_json(empty ? NAN : row->bias), "mean_abs",
         real_json(empty ? NAN : row->mean_abs), "median_abs",

@@ -105,6 +105,13 @@ static void pairs_are_compared_with_each_other_and_a_wall(void **state)
     // 120 against 150 m/s2, farthest apart when the wall's car has rebounded for good (80 ms) and
     // the pair's has lost 9.6 m/s of 12.
     assert_near(quantity(CP_SUITE_wall_difference_pct, 0, 1, &pair, &wall), 24.0, 1e-6);
+    cp_crash_result_destroy(&wall);
+
+    // Rebounding at 5 instead of 2 m/s counts.
+    const even_crash bouncing = {10.0, 5.0, 0.1, 0.0, 0.0};
+    wall = (cp_crash_result){.vehicle_count = 1};
+    fill(&bouncing, &wall.pulse[0], &wall.severity[0]);
+    assert_near(quantity(CP_SUITE_wall_difference_pct, 0, 1, &pair, &wall), 30.0, 1e-6);
     cp_crash_result_destroy(&pair);
     cp_crash_result_destroy(&wall);
 }

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Make the tables a suite is judged by from single tests that do not ship.
 
-    python3 db/validation/quantiles.py [REFERENCES] [--output FOLDER]
+    python3 db/validation/quantiles.py [REFERENCES] [--output FOLDER | --axes]
 
 REFERENCES (default ../shared/reference beside the project) holds iihs_small_overlap/velocities.csv,
 nhtsa_frontal/crush_and_peak.csv, car_to_car/nhtsa_oblique.csv and car_to_car/reconstructed.csv.
@@ -121,12 +121,36 @@ def reconstructed(references):
     return RECONSTRUCTED_SOURCE + "\n".join(lines) + "\n"
 
 
+def axes(references):
+    """Tests that both small-overlap tables hold: amount and direction of the change of velocity at
+    separation and by accelerometers after 250 ms, in m/s and degrees from the x axis."""
+    folder = references / "iihs_small_overlap"
+    tests = {row["test_code"]: row for row in read(folder / "velocities.csv")}
+    lines = ["test,separation_m_s,separation_deg,accelerometer_m_s,accelerometer_deg,ratio"]
+    for row in read(folder / "separation.csv"):
+        test = tests.get(row["test"])
+        if test is None or test["dvx_250_m_s"] == "":
+            continue
+        pairs = ((float(row["dvx_m_s"]), float(row["dvy_m_s"])),
+                 (-float(test["dvx_250_m_s"]), float(test["dvy_away_250_m_s"])))
+        amounts = [math.hypot(x, y) for x, y in pairs]
+        angles = [math.degrees(math.atan2(y, x)) for x, y in pairs]
+        lines.append(f"{row['test']},{amounts[0]:.2f},{angles[0]:.1f},{amounts[1]:.2f},{angles[1]:.1f},"
+                     f"{amounts[1] / amounts[0]:.3f}")
+    return "\n".join(lines) + "\n"
+
+
 def main():
     parser = argparse.ArgumentParser(description="quantiles of crash test populations")
     parser.add_argument("references", nargs="?", type=pathlib.Path,
                         default=HERE / ".." / ".." / ".." / "shared" / "reference")
     parser.add_argument("--output", type=pathlib.Path, default=HERE)
+    parser.add_argument("--axes", action="store_true",
+                        help="write nothing; print what tells the axes of the small-overlap tables")
     arguments = parser.parse_args()
+    if arguments.axes:
+        print(axes(arguments.references), end="")
+        return
     for name, make in (("quantiles.csv", quantiles), ("nhtsa_oblique.csv", oblique),
                        ("reconstructed.csv", reconstructed)):
         (arguments.output / name).write_text(make(arguments.references), encoding="utf-8")

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "crash/crash_simulation.h"
 
+#include "core/log.h"
 #include "crash/barrier.h"
 #include "crash/encounter.h"
 #include "crash/film_camera.h"
@@ -8,6 +9,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 cp_crash_options cp_crash_options_default(void)
 {
@@ -31,8 +33,56 @@ static void report_ode_and_abort(int number, const char *format, va_list argumen
     abort();
 }
 
+// ODE's constructors write through what they are given: without memory the process ends here.
+static void *memory_or_end(void *memory)
+{
+    if (memory == NULL) {
+        cp_log_error("out of memory: the physics engine ODE");
+        _exit(cp_status_exit_code(CP_NO_MEMORY));
+    }
+    return memory;
+}
+
+static void *allocate(dsizeint size)
+{
+    return memory_or_end(malloc(size));
+}
+
+static void *allocate_again(void *memory, dsizeint old_size, dsizeint size)
+{
+    (void)old_size;
+    return memory_or_end(realloc(memory, size));
+}
+
+static void release(void *memory, dsizeint size)
+{
+    (void)size;
+    free(memory);
+}
+
+// What a step works in may be refused: dWorldStep then says that it did not step.
+static void *allocate_for_step(dsizeint size)
+{
+    return malloc(size);
+}
+
+static void *keep_block(void *block, dsizeint size, dsizeint smaller_size)
+{
+    (void)size;
+    (void)smaller_size;
+    return block;
+}
+
+static const dWorldStepMemoryFunctionsInfo STEP_MEMORY = {.struct_size = sizeof STEP_MEMORY,
+                                                          .alloc_block = allocate_for_step,
+                                                          .shrink_block = keep_block,
+                                                          .free_block = release};
+
 cp_status cp_crash_library_begin(cp_error *error)
 {
+    dSetAllocHandler(allocate);
+    dSetReallocHandler(allocate_again);
+    dSetFreeHandler(release);
     if (!dInitODE2(0) || !dAllocateODEDataForThread(dAllocateMaskAll))
         return cp_fail(error, CP_CRASH_FAILED, "the physics engine ODE could not be initialised");
     dSetMessageHandler(report_ode);
@@ -96,6 +146,8 @@ static cp_status create_world(crash_run *run, cp_error *error)
     run->world = dWorldCreate();
     run->threading = dThreadingAllocateSelfThreadedImplementation();
     if (run->world == NULL || run->threading == NULL)
+        return cp_fail_memory(error, "physics world");
+    if (!dWorldSetStepMemoryManager(run->world, &STEP_MEMORY))
         return cp_fail_memory(error, "physics world");
     dWorldSetStepThreadingImplementation(
         run->world, dThreadingImplementationGetFunctions(run->threading), run->threading);
@@ -410,20 +462,21 @@ static bool olc_passed(const crash_run *run, bool awaited)
     return true;
 }
 
-// One step of the world; returns whether the parties pressed on each other.
-static bool advance(crash_run *run, double dt)
+// One step of the world; *pressed: the parties pressed on each other.
+static cp_status advance(crash_run *run, double dt, bool *pressed, cp_error *error)
 {
     for (int c = 0; c < run->car_count; c++)
         cp_car_apply_forces(&run->car[c]);
     cp_encounter_apply_forces(&run->encounter, dt);
     update_energy(run);
-    dWorldStep(run->world, dt);
-    bool pressed = cp_encounter_end_step(&run->encounter, dt);
+    if (!dWorldStep(run->world, dt))
+        return cp_fail_memory(error, "a step of the physics engine ODE");
+    *pressed = cp_encounter_end_step(&run->encounter, dt);
     for (int c = 0; c < run->car_count; c++)
         cp_car_after_step(&run->car[c], dt);
     record_step(run, dt);
     film_now(run, dt);
-    return pressed;
+    return CP_OK;
 }
 
 static cp_status simulate_contact(crash_run *run, cp_error *error)
@@ -439,7 +492,11 @@ static cp_status simulate_contact(crash_run *run, cp_error *error)
     // Free from the beginning: nothing to simulate.
     bool free_again = !run->result->touched;
     while (!free_again && run->sample < longest) {
-        if (advance(run, dt)) {
+        bool pressed = false;
+        cp_status status = advance(run, dt, &pressed, error);
+        if (status != CP_OK)
+            return status;
+        if (pressed) {
             last_pressed = run->sample;
             run->result->separation_s = dt * (double)run->sample;
         }

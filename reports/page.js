@@ -812,7 +812,8 @@
     return list;
   }
 
-  const parameters = object => Object.keys(object || {}).map(name => `${name} = ${object[name]}`).join(", ");
+  const pairs = (object, between) => Object.keys(object || {}).map(name => `${name}${between}${object[name]}`).join(", ");
+  const control = c => `${c.model || c.function} (${pairs(c.parameters, " = ")}${c.equipment ? `; equipment ${pairs(c.equipment, " ")}` : ""})`;
 
   function design() {
     const parent = document.getElementById("design"), study = data.study;
@@ -821,8 +822,8 @@
       ["Design", words[study.design] || study.design],
       ["Replications", `${study.replications} planned per scenario and variant${data.unfinished ? `; ${data.unfinished} not finished and not counted` : ""}`],
       ["Simulated", `${study.duration_s} s each, of these ${study.warmup_s} s warm-up not counted; step ${study.step_length_s} s`],
-      ...data.about.scenarios.map(s => [`Driver errors in ${s.name}`, JSON.parse(s.driver_errors).map(e => `${e.model} (${parameters(e.parameters)})`).join("; ") || "none"]),
-      ...data.variants.map(v => [`Variant ${v.name}`, v.functions.map(f => `${f.function} (${parameters(f.parameters)})`).join("; ") || "no function"]),
+      ...data.about.scenarios.map(s => [`Driver errors in ${s.name}`, JSON.parse(s.driver_errors).map(control).join("; ") || "none"]),
+      ...data.variants.map(v => [`Variant ${v.name}`, v.functions.map(control).join("; ") || "no function"]),
       ...data.backgrounds.map(b => [`Without driver errors, ${b.scenario}`, b.is_known ? b.text + ": the network’s own doing" : "not simulated"]),
       ["Observation", "the frontally struck vehicle; a crash with both fronts struck gives two, kept together with all crashes of their replication in every interval and test"]
     ]);

@@ -10,6 +10,7 @@
 #include "store/background_rows.h"
 #include "store/claim.h"
 #include "store/query.h"
+#include "study/controls_text.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -526,6 +527,8 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
     if (options->jobs < 1)
         return cp_fail(error, CP_BAD_INPUT, "jobs must be at least 1");
     cp_status status = load_inputs(&run, error);
+    if (status == CP_OK && options->progress)
+        cp_controls_text_study(&run.study, "crashpulse: ", stderr);
     if (status == CP_OK)
         status = find_worker(&run, error);
     if (status == CP_OK)

@@ -812,8 +812,8 @@
     return list;
   }
 
-  const pairs = (object, between) => Object.keys(object || {}).map(name => `${name}${between}${object[name]}`).join(", ");
-  const control = c => `${c.model || c.function} (${pairs(c.parameters, " = ")}${c.equipment ? `; equipment ${pairs(c.equipment, " ")}` : ""})`;
+  const settings = (object, between) => Object.keys(object || {}).map(name => `${name}${between}${object[name]}`).join(", ");
+  const control = c => `${c.model || c.function} (${settings(c.parameters, " = ")}${c.equipment ? `; equipment ${settings(c.equipment, " ")}` : ""})`;
 
   function design() {
     const parent = document.getElementById("design"), study = data.study;

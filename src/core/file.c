@@ -16,6 +16,8 @@ cp_status cp_file_read(const char *path, char **content, size_t *size, cp_error 
         const char *reason = file == NULL ? strerror(errno) : "is a directory";
         if (file != NULL)
             fclose(file);
+        else if (errno == ENOMEM)
+            return cp_fail_memory(error, path);
         return cp_fail(error, CP_BAD_INPUT, "%s: cannot be read: %s", path, reason);
     }
 

@@ -67,6 +67,14 @@ static size_t line_of_complaint(const cp_yaml_file *file, const cyaml_report *re
     return found > 0 ? found : line;
 }
 
+// libyaml has no word for its own lack of memory: libcyaml passes on that it has none.
+static bool lacked_memory(cyaml_err_t outcome, const cyaml_report *report)
+{
+    return outcome == CYAML_ERR_OOM || outcome == CYAML_ERR_LIBYAML_PARSER_INIT ||
+           outcome == CYAML_ERR_LIBYAML_EVENT_INIT ||
+           (outcome == CYAML_ERR_LIBYAML_PARSER && strstr(report->message, "(null)") != NULL);
+}
+
 static cp_status load_structure(cp_yaml_file *file, const char *content, size_t size,
                                 cp_error *error)
 {
@@ -82,6 +90,8 @@ static cp_status load_structure(cp_yaml_file *file, const char *content, size_t 
         return CP_OK;
     if (outcome == CYAML_OK)
         return cp_fail(error, CP_BAD_INPUT, "%s: the file is empty", file->path);
+    if (lacked_memory(outcome, &report))
+        return cp_fail_memory(error, file->path);
     return cp_fail(error, CP_BAD_INPUT, "%s:%zu: %s", file->path, line_of_complaint(file, &report),
                    report.message[0] != '\0' ? report.message : cyaml_strerror(outcome));
 }

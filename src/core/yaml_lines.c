@@ -237,8 +237,11 @@ cp_status cp_yaml_lines_read(cp_yaml_file *file, const char *content, size_t siz
     bool ended = false;
     while (status == CP_OK && !ended) {
         yaml_event_t event;
-        if (!yaml_parser_parse(&parser, &event))
+        if (!yaml_parser_parse(&parser, &event)) {
+            if (parser.error == YAML_MEMORY_ERROR)
+                status = cp_fail_memory(error, file->path);
             break;
+        }
         status = take_event(&walk, &event);
         ended = event.type == YAML_STREAM_END_EVENT;
         yaml_event_delete(&event);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "crash/crash_simulation.h"
 
-#include "core/log.h"
+#include "core/memory.h"
 #include "crash/barrier.h"
 #include "crash/encounter.h"
 #include "crash/film_camera.h"
@@ -9,7 +9,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 cp_crash_options cp_crash_options_default(void)
 {
@@ -33,25 +32,17 @@ static void report_ode_and_abort(int number, const char *format, va_list argumen
     abort();
 }
 
-// ODE's constructors write through what they are given: without memory the process ends here.
-static void *memory_or_end(void *memory)
-{
-    if (memory == NULL) {
-        cp_log_error("out of memory: the physics engine ODE");
-        _exit(cp_status_exit_code(CP_NO_MEMORY));
-    }
-    return memory;
-}
-
+// ODE writes through what it is given, in constructors and in its first step: without memory the
+// process ends.
 static void *allocate(dsizeint size)
 {
-    return memory_or_end(malloc(size));
+    return cp_memory_or_end(size, "the physics engine ODE");
 }
 
 static void *allocate_again(void *memory, dsizeint old_size, dsizeint size)
 {
     (void)old_size;
-    return memory_or_end(realloc(memory, size));
+    return cp_memory_again_or_end(memory, size, "the physics engine ODE");
 }
 
 static void release(void *memory, dsizeint size)
@@ -59,24 +50,6 @@ static void release(void *memory, dsizeint size)
     (void)size;
     free(memory);
 }
-
-// What a step works in may be refused: dWorldStep then says that it did not step.
-static void *allocate_for_step(dsizeint size)
-{
-    return malloc(size);
-}
-
-static void *keep_block(void *block, dsizeint size, dsizeint smaller_size)
-{
-    (void)size;
-    (void)smaller_size;
-    return block;
-}
-
-static const dWorldStepMemoryFunctionsInfo STEP_MEMORY = {.struct_size = sizeof STEP_MEMORY,
-                                                          .alloc_block = allocate_for_step,
-                                                          .shrink_block = keep_block,
-                                                          .free_block = release};
 
 cp_status cp_crash_library_begin(cp_error *error)
 {
@@ -147,13 +120,12 @@ static cp_status create_world(crash_run *run, cp_error *error)
     run->threading = dThreadingAllocateSelfThreadedImplementation();
     if (run->world == NULL || run->threading == NULL)
         return cp_fail_memory(error, "physics world");
-    if (!dWorldSetStepMemoryManager(run->world, &STEP_MEMORY))
-        return cp_fail_memory(error, "physics world");
     dWorldSetStepThreadingImplementation(
         run->world, dThreadingImplementationGetFunctions(run->threading), run->threading);
     dWorldSetGravity(run->world, 0.0, 0.0, 0.0);
     dWorldSetERP(run->world, 0.6);
     dWorldSetCFM(run->world, 1e-11);
+    dWorldSetAutoDisableAverageSamplesCount(run->world, 0); // unused, and taken by operator new
     return CP_OK;
 }
 
@@ -470,7 +442,8 @@ static cp_status advance(crash_run *run, double dt, bool *pressed, cp_error *err
     cp_encounter_apply_forces(&run->encounter, dt);
     update_energy(run);
     if (!dWorldStep(run->world, dt))
-        return cp_fail_memory(error, "a step of the physics engine ODE");
+        return cp_fail(error, CP_CRASH_FAILED, "the physics engine ODE refused the step at %g s",
+                       dt * (double)run->sample);
     *pressed = cp_encounter_end_step(&run->encounter, dt);
     for (int c = 0; c < run->car_count; c++)
         cp_car_after_step(&run->car[c], dt);

@@ -60,6 +60,8 @@ static cp_status parse(reader *self, FILE *file, cp_error *error)
         enum XML_Status parsed = XML_ParseBuffer(self->parser, (int)size, is_last);
         if (self->status != CP_OK)
             return self->status;
+        if (parsed == XML_STATUS_ERROR && XML_GetErrorCode(self->parser) == XML_ERROR_NO_MEMORY)
+            return cp_fail_memory(error, self->path);
         if (parsed == XML_STATUS_ERROR)
             return cp_fail(error, CP_BAD_INPUT, "%s:%lu: is not XML: %s", self->path,
                            (unsigned long)XML_GetCurrentLineNumber(self->parser),

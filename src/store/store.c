@@ -219,6 +219,14 @@ static cp_status check_version(cp_store *store, cp_store_mode mode, cp_error *er
     return cp_schema_migrate(store, error);
 }
 
+static cp_status fail_opening(cp_store *store, int code, cp_error *error)
+{
+    if (store->handle == NULL || (code & 0xff) == SQLITE_NOMEM)
+        return cp_fail_memory(error, store->path);
+    return cp_fail(error, CP_BAD_INPUT, "%s: cannot be opened: %s", store->path,
+                   sqlite3_errmsg(store->handle));
+}
+
 // On a read-only disk SQLite cannot keep its log of readers: nobody writes there, so it need not.
 static cp_status open_unchanging(cp_store *store, cp_error *error)
 {
@@ -244,10 +252,7 @@ static cp_status open_unchanging(cp_store *store, cp_error *error)
         return cp_fail_memory(error, store->path);
     int result = sqlite3_open_v2(uri, &store->handle, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, NULL);
     sqlite3_free(uri);
-    return result == SQLITE_OK
-               ? CP_OK
-               : cp_fail(error, CP_BAD_INPUT, "%s: cannot be opened: %s", store->path,
-                         store->handle != NULL ? sqlite3_errmsg(store->handle) : "out of memory");
+    return result == SQLITE_OK ? CP_OK : fail_opening(store, result, error);
 }
 
 static cp_status open_file(cp_store *store, cp_store_mode mode, bool exists, cp_error *error)
@@ -263,8 +268,7 @@ static cp_status open_file(cp_store *store, cp_store_mode mode, bool exists, cp_
     if (mode == CP_STORE_CREATE)
         flags |= SQLITE_OPEN_CREATE;
     if (sqlite3_open_v2(store->path, &store->handle, flags, NULL) != SQLITE_OK)
-        return cp_fail(error, CP_BAD_INPUT, "%s: cannot be opened: %s", store->path,
-                       store->handle != NULL ? sqlite3_errmsg(store->handle) : "out of memory");
+        return fail_opening(store, sqlite3_errcode(store->handle), error);
     return CP_OK;
 }
 

@@ -2,6 +2,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/log.h"
+#include "core/output_files.h"
 #include "report/grouping.h"
 #include "report/plot.h"
 
@@ -118,7 +119,10 @@ cp_status cmd_plot(int argc, char **argv, cp_error *error)
     size_t baseline = 0;
     cp_comparison_options options = cp_comparison_options_default();
     options.permutations = 0; // no figure shows a p-value
-    cp_status status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+    cp_status status =
+        cp_output_files_check(&a.output_path, 1, (const char *const[]){a.db_path}, 1, error);
+    if (status == CP_OK)
+        status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
     if (status == CP_OK)
         status = cp_study_data_read(store, &data, error);
     if (status == CP_OK)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/comparison_table.h"
 
+#include "core/memory.h"
+#include "core/safe_text.h"
 #include "report/answer.h"
 #include "report/quantity.h"
 
@@ -158,9 +160,11 @@ static cp_status print_contrasts(const cp_study_data *data, const cp_comparison 
 }
 
 // A paragraph broken at spaces after at most 79 characters.
-static void print_wrapped(const char *text, FILE *file)
+static void print_wrapped(const char *raw, FILE *file)
 {
-    size_t column = 0;
+    size_t column = 0, room = 4 * strlen(raw) + 1;
+    char *safe = cp_memory_or_end(room, "a paragraph");
+    const char *text = cp_text_for_terminal(raw, "", safe, room);
     while (*text) {
         size_t length = strcspn(text, " "), width = 0;
         for (size_t k = 0; k < length; k++)
@@ -178,6 +182,7 @@ static void print_wrapped(const char *text, FILE *file)
         text += strspn(text, " ");
     }
     fputc('\n', file);
+    free(safe);
 }
 
 void cp_comparison_print_paragraph(const char *text, FILE *file)
@@ -190,8 +195,10 @@ cp_status cp_comparison_print_table(const cp_study_data *data, const cp_comparis
                                     const char *heading_text, const char *answer, FILE *file,
                                     cp_error *error)
 {
-    if (heading_text)
-        fprintf(file, "%s\n\n", heading_text);
+    if (heading_text) {
+        cp_text_print(file, heading_text, "");
+        fputs("\n\n", file);
+    }
     cp_status status = print_variants(data, comparison, file, error);
     if (status == CP_OK)
         status = print_contrasts(data, comparison, false, file, error);

@@ -15,10 +15,15 @@ extern "C" {
 CP_MUST_CHECK cp_status cp_file_read(const char *path, char **content, size_t *size,
                                      cp_error *error);
 
-/* Write a whole file by way of a temporary neighbour and rename, so that readers see the old or
- * the new content, never half of it. */
+/* Write a whole file by way of a temporary neighbour with a random name, on the disk before it gets
+ * the name, so that readers see the old or the new content, never half of it. What is there and no
+ * regular file is not replaced: CP_BAD_INPUT. */
 CP_MUST_CHECK cp_status cp_file_write(const char *path, const void *content, size_t size,
                                       cp_error *error);
+
+/* Whether cp_file_write may put a file there: nothing is, or a regular file. CP_BAD_INPUT for a
+ * folder, a symbolic link, a device, a pipe. */
+CP_MUST_CHECK cp_status cp_file_check_target(const char *path, cp_error *error);
 
 /* path as seen from the folder of the file base ("a/study.yaml", "../b.cfg" -> "a/../b.cfg");
  * absolute paths stay. The caller frees. NULL when memory is gone. */

@@ -151,10 +151,27 @@ static cp_status take_alias(line_walk *walk, const char *name, size_t line)
 
 // ---- events --------------------------------------------------------------------------------
 
+// Escape sequences of a terminal, and zero bytes, which end a text for all who read it. Ends of
+// lines are no such thing.
+static bool holds_control(const yaml_event_t *event)
+{
+    const char *text = (const char *)event->data.scalar.value;
+    size_t length = event->data.scalar.length;
+    for (size_t k = 0; k < length; k++) {
+        unsigned char c = (unsigned char)text[k];
+        bool c1 = c == 0xc2 && (unsigned char)text[k + 1] < 0xa0;
+        if ((c < 0x20 && c != '\n' && c != '\t') || c == 0x7f || c1)
+            return true;
+    }
+    return false;
+}
+
 static cp_status take_key(line_walk *walk, const yaml_event_t *event, size_t line)
 {
     collection *inner = &walk->level[walk->depth - 1];
     const char *key = (const char *)event->data.scalar.value;
+    if (holds_control(event))
+        return fail_at(walk, line, "a key must not hold control characters", "");
     if (strcmp(key, "<<") == 0)
         return fail_at(walk, line,
                        "merge keys (<<) are not read; write the keys out, or give the "
@@ -169,6 +186,8 @@ static cp_status take_scalar(line_walk *walk, const yaml_event_t *event, size_t 
 {
     size_t marked = NO_ANCHOR;
     extend_path(walk);
+    if (holds_control(event))
+        return fail_at(walk, line, "must not hold control characters: ", walk->path);
     cp_status status = begin_anchor(walk, event->data.scalar.anchor, &marked);
     if (status == CP_OK)
         status = remember_line(walk, walk->path, line, (const char *)event->data.scalar.value);

@@ -288,8 +288,12 @@ cp_status cp_merge(cp_store *store, const char *path, cp_merge_count *count, cp_
 {
     *count = (cp_merge_count){0};
     cp_status status = check_part(path, error);
+    char *file_name = cp_store_file_name(path);
+    if (status == CP_OK && file_name == NULL)
+        status = cp_fail_memory(error, path);
     if (status == CP_OK)
-        status = run_sql(store, error, "ATTACH %Q AS part", path);
+        status = run_sql(store, error, "ATTACH %Q AS part", file_name);
+    free(file_name);
     if (status != CP_OK)
         return status;
     status = cp_store_begin(store, error);

@@ -18,6 +18,7 @@
 
 struct cp_store {
     char *path;
+    char *file_name; /* the same as SQLite takes it: ':memory:' and 'file:x' are names too */
     sqlite3 *handle;
     int in_transaction;
 };
@@ -30,6 +31,15 @@ sqlite3 *cp_store_sqlite(cp_store *store)
 const char *cp_store_path(const cp_store *store)
 {
     return store->path;
+}
+
+char *cp_store_file_name(const char *path)
+{
+    bool clear = path[0] == '/' || path[0] == '.';
+    char *name = malloc(strlen(path) + 3);
+    if (name != NULL)
+        sprintf(name, "%s%s", clear ? "" : "./", path);
+    return name;
 }
 
 cp_status cp_store_fail(cp_store *store, cp_error *error, const char *what)
@@ -242,8 +252,8 @@ static cp_status open_unchanging(cp_store *store, cp_error *error)
             store->path);
 
     // A file name within an URI: its special characters as %xx.
-    char *uri = sqlite3_mprintf("file:");
-    for (const char *c = store->path; *c != '\0' && uri != NULL; c++)
+    char *uri = sqlite3_mprintf(store->file_name[0] == '/' ? "file://" : "file:");
+    for (const char *c = store->file_name; *c != '\0' && uri != NULL; c++)
         uri = strchr("%?# ", *c) != NULL ? sqlite3_mprintf("%z%%%02x", uri, *c)
                                          : sqlite3_mprintf("%z%c", uri, *c);
     if (uri != NULL)
@@ -267,7 +277,7 @@ static cp_status open_file(cp_store *store, cp_store_mode mode, bool exists, cp_
     int flags = mode == CP_STORE_READ ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
     if (mode == CP_STORE_CREATE)
         flags |= SQLITE_OPEN_CREATE;
-    if (sqlite3_open_v2(store->path, &store->handle, flags, NULL) != SQLITE_OK)
+    if (sqlite3_open_v2(store->file_name, &store->handle, flags, NULL) != SQLITE_OK)
         return fail_opening(store, sqlite3_errcode(store->handle), error);
     return CP_OK;
 }
@@ -311,10 +321,12 @@ cp_status cp_store_open(const char *path, cp_store_mode mode, cp_store **store, 
 {
     *store = NULL;
     cp_store *opened = calloc(1, sizeof *opened);
-    if (opened != NULL)
-        opened->path = strdup(path);
-    if (opened == NULL || opened->path == NULL) {
-        free(opened);
+    if (opened == NULL)
+        return cp_fail_memory(error, path);
+    opened->path = strdup(path);
+    opened->file_name = cp_store_file_name(path);
+    if (opened->path == NULL || opened->file_name == NULL) {
+        cp_store_close(opened);
         return cp_fail_memory(error, path);
     }
     cp_status status = open_handle(opened, mode, error);
@@ -334,5 +346,6 @@ void cp_store_close(cp_store *store)
         cp_store_rollback(store);
     sqlite3_close(store->handle);
     free(store->path);
+    free(store->file_name);
     free(store);
 }

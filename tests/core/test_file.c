@@ -76,16 +76,42 @@ static void a_failed_write_leaves_nothing_behind(void **state)
     assert_int_equal(cp_file_write(path, "x", 1, &error), CP_IO_FAILED);
     assert_non_null(strstr(error.text, path));
 
-    // The target is a folder: the rename fails, and the neighbour is taken away again.
-    snprintf(path, sizeof path, "%s/folder", (char *)*state);
-    assert_int_equal(mkdir(path, 0777), 0);
-    assert_int_equal(cp_file_write(path, "x", 1, &error), CP_IO_FAILED);
-    rmdir(path);
     DIR *folder = opendir(*state);
     assert_non_null(folder);
     for (struct dirent *entry; (entry = readdir(folder)) != NULL;)
         assert_int_equal(entry->d_name[0], '.');
     closedir(folder);
+}
+
+// What is no regular file is left alone, whatever the rights of the user.
+static void only_regular_files_are_replaced(void **state)
+{
+    char path[64], other[64], *content = NULL;
+    size_t size = 0;
+    cp_error error = {0};
+    snprintf(path, sizeof path, "%s/target", (char *)*state);
+    snprintf(other, sizeof other, "%s/other", (char *)*state);
+    assert_int_equal(mkdir(path, 0777), 0);
+    assert_int_equal(cp_file_write(path, "x", 1, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "a folder"));
+    rmdir(path);
+    assert_int_equal(mkfifo(path, 0666), 0);
+    assert_int_equal(cp_file_write(path, "x", 1, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "a pipe"));
+    unlink(path);
+    assert_int_equal(cp_file_write("/dev/null", "x", 1, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "a device"));
+
+    // A link: neither it nor what it leads to.
+    assert_int_equal(cp_file_write(other, "kept", 4, &error), CP_OK);
+    assert_int_equal(symlink("other", path), 0);
+    assert_int_equal(cp_file_write(path, "x", 1, &error), CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, "a symbolic link"));
+    assert_int_equal(cp_file_read(other, &content, &size, &error), CP_OK);
+    assert_string_equal(content, "kept");
+    free(content);
+    unlink(path);
+    unlink(other);
 }
 
 static void neighbours_are_found_beside_the_base(void **state)
@@ -111,6 +137,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_missing_file_and_a_folder_are_bad_input, make_folder,
                                         remove_folder),
         cmocka_unit_test_setup_teardown(a_failed_write_leaves_nothing_behind, make_folder,
+                                        remove_folder),
+        cmocka_unit_test_setup_teardown(only_regular_files_are_replaced, make_folder,
                                         remove_folder),
         cmocka_unit_test(neighbours_are_found_beside_the_base),
     };

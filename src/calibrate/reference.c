@@ -83,7 +83,7 @@ cp_status cp_reference_load(const char *path, cp_reference *reference, cp_error 
     *reference = (cp_reference){0};
     char *content = NULL;
     size_t size = 0;
-    cp_status status = cp_file_read(path, &content, &size, error);
+    cp_status status = cp_file_read_text(path, &content, &size, error);
     if (status != CP_OK)
         return status;
     cp_hash_bytes(content, size, reference->hash);

@@ -295,7 +295,7 @@ static cp_status load_file(const cp_pulse_source *source, cp_reference_pulse *pu
                        "%s: is a folder; the pulse of a test in it needs the numbers of its "
                        "channels",
                        source->path);
-    cp_status status = cp_file_read(source->path, &content, &size, error);
+    cp_status status = cp_file_read_text(source->path, &content, &size, error);
     if (status != CP_OK)
         return status;
     cp_hash_bytes(content, size, pulse->hash);

@@ -106,6 +106,8 @@ cp_status cp_yaml_parse(const char *name, const char *content, size_t size,
     // Before libcyaml's pass: its complaints find their line here, and what it takes without a word
     // (a second document, aliases of aliases without end) is refused.
     if (status == CP_OK)
+        status = cp_file_check_text(name, content, size, error);
+    if (status == CP_OK)
         status = cp_yaml_lines_read(file, content, size, error);
     if (status == CP_OK)
         status = load_structure(file, content, size, error);

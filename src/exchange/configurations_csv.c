@@ -263,7 +263,7 @@ cp_status cp_configurations_csv_read(const char *path, cp_configuration_list *li
     bool has_header = false;
     *list = (cp_configuration_list){0};
     reading self = {.path = path, .list = list};
-    cp_status status = cp_file_read(path, &content, &size, error);
+    cp_status status = cp_file_read_text(path, &content, &size, error);
     for (char *line = content; status == CP_OK && line != NULL;) {
         char *end = strchr(line, '\n');
         if (end != NULL)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/xml_file.h"
 
+#include "core/file.h"
+
 #include <errno.h>
 #include <expat.h>
 #include <math.h>
@@ -73,16 +75,16 @@ static cp_status parse(reader *self, FILE *file, cp_error *error)
 cp_status cp_xml_read(const char *path, const char *root, cp_xml_visit visit, void *context,
                       cp_error *error)
 {
-    FILE *file = fopen(path, "rb");
-    if (file == NULL)
-        return cp_fail(error, CP_BAD_INPUT, "%s: %s", path, strerror(errno));
+    FILE *file = NULL;
+    cp_status status = cp_file_open(path, &file, error);
+    if (status != CP_OK)
+        return status;
     reader self = {.parser = XML_ParserCreate(NULL),
                    .path = path,
                    .root = root,
                    .visit = visit,
                    .context = context,
                    .error = error};
-    cp_status status = CP_OK;
     if (self.parser == NULL) {
         status = cp_fail_memory(error, path);
     } else {

@@ -3,6 +3,7 @@
 
 #include "core/file.h"
 #include "store/schema.h"
+#include "store/schema_match.h"
 #include "store/store_sqlite.h"
 
 #include <errno.h>
@@ -212,11 +213,15 @@ void cp_store_rollback(cp_store *store)
 
 // ---- opening -------------------------------------------------------------------------------
 
-// Whose file it is and how old, before anything is changed in it.
-static cp_status check_version(cp_store *store, cp_store_mode mode, cp_error *error)
+// Whose file it is and how old, before anything is changed in it. views: whether those of this
+// program stand in it.
+static cp_status check_version(cp_store *store, cp_store_mode mode, bool *views, cp_error *error)
 {
     int version = 0;
+    *views = false;
     cp_status status = cp_schema_check(store, &version, error);
+    if (status == CP_OK && version > 0)
+        status = cp_schema_match(store, version, views, error);
     if (status != CP_OK || version == CP_STORE_VERSION)
         return status;
     if (version == 0 && mode != CP_STORE_CREATE)
@@ -226,7 +231,9 @@ static cp_status check_version(cp_store *store, cp_store_mode mode, cp_error *er
                        "%s: was written by an older crashpulse (schema version %d, this program "
                        "reads %d); 'crashpulse check --upgrade' brings it up to date",
                        store->path, version, CP_STORE_VERSION);
-    return cp_schema_migrate(store, error);
+    status = cp_schema_migrate(store, error);
+    *views = status == CP_OK;
+    return status;
 }
 
 static cp_status fail_opening(cp_store *store, int code, cp_error *error)
@@ -282,6 +289,24 @@ static cp_status open_file(cp_store *store, cp_store_mode mode, bool exists, cp_
     return CP_OK;
 }
 
+// A database may come from anybody: its schema runs no function that reaches out, nothing writes
+// past SQL, and no value is larger than any of ours.
+static cp_status set_limits(cp_store *store, cp_store_mode mode, cp_error *error)
+{
+    enum { VALUE_BYTES_MAX = 256 << 20 };
+    int result = sqlite3_db_config(store->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+    // Our own checks of what is written take SQLite's JSON functions, which count as untrusted.
+    if (result == SQLITE_OK && mode == CP_STORE_READ)
+        result = sqlite3_db_config(store->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
+    if (result == SQLITE_OK && mode == CP_STORE_READ)
+        result = sqlite3_db_config(store->handle, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
+    if (result != SQLITE_OK)
+        return cp_store_fail(store, error, "setting it up");
+    sqlite3_limit(store->handle, SQLITE_LIMIT_LENGTH, VALUE_BYTES_MAX);
+    sqlite3_limit(store->handle, SQLITE_LIMIT_ATTACHED, 1);
+    return CP_OK;
+}
+
 static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *error)
 {
     struct stat entry;
@@ -295,16 +320,19 @@ static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *erro
     if (status != CP_OK)
         return status;
     sqlite3_busy_timeout(store->handle, BUSY_TIMEOUT_MS);
+    bool views = false;
+    status = set_limits(store, mode, error);
     // For new files only: rows of some hundred bytes, packed pulses among them, fill larger pages
     // better.
     if (mode == CP_STORE_CREATE)
         sqlite3_exec(store->handle, "PRAGMA page_size=8192", NULL, NULL, NULL);
-    status = check_version(store, mode, error);
+    if (status == CP_OK)
+        status = check_version(store, mode, &views, error);
     if (status == CP_OK && mode != CP_STORE_READ)
         status = cp_store_execute(store, "setting it up",
                                   "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL", error);
     if (status == CP_OK)
-        status = cp_schema_refresh_views(store, mode != CP_STORE_READ, error);
+        status = cp_schema_refresh_views(store, views, mode != CP_STORE_READ, error);
     if (status == CP_OK)
         status = cp_store_execute(store, "setting it up", "PRAGMA foreign_keys=ON", error);
 

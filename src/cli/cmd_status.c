@@ -205,9 +205,13 @@ static cp_status print_backgrounds(cp_store *store, cp_error *error)
             const cp_network_background *row = &backgrounds.row[k];
             printf("  ");
             cp_text_print(stdout, row->scenario, "");
-            printf(": %s\n", row->is_known ? row->text : "not simulated yet");
-            if (row->warning != NULL)
-                printf("    warning: %s\n", row->warning);
+            printf(": ");
+            cp_text_print(stdout, row->is_known ? row->text : "not simulated yet", "");
+            if (row->warning != NULL) {
+                printf("\n    warning: ");
+                cp_text_print(stdout, row->warning, "");
+            }
+            printf("\n");
         }
     }
     cp_network_backgrounds_destroy(&backgrounds);

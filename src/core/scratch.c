@@ -17,11 +17,33 @@
 
 extern char **environ;
 
-cp_status cp_scratch_open(cp_scratch *scratch, cp_error *error)
+static const char *temporary_folder(void)
 {
     const char *folder = getenv("TMPDIR");
-    if (folder == NULL || folder[0] == '\0')
-        folder = "/tmp";
+    return folder != NULL && folder[0] != '\0' ? folder : "/tmp";
+}
+
+FILE *cp_scratch_file(void)
+{
+    char path[4096];
+    if (snprintf(path, sizeof path, "%s/crashpulse-XXXXXX", temporary_folder()) >=
+        (int)sizeof path) {
+        errno = ENAMETOOLONG;
+        return NULL;
+    }
+    int descriptor = mkostemp(path, O_CLOEXEC);
+    if (descriptor < 0)
+        return NULL;
+    unlink(path);
+    FILE *file = fdopen(descriptor, "w+b");
+    if (file == NULL)
+        close(descriptor);
+    return file;
+}
+
+cp_status cp_scratch_open(cp_scratch *scratch, cp_error *error)
+{
+    const char *folder = temporary_folder();
     // Room behind it for the names of files.
     int length =
         snprintf(scratch->path, sizeof scratch->path - 256, "%s/crashpulse-XXXXXX", folder);

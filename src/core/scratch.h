@@ -5,6 +5,7 @@
 #include "core/error.h"
 
 #include <stddef.h>
+#include <stdio.h>
 
 /* A folder of a few files that another program works on, with a random name in $TMPDIR (or /tmp)
  * that nobody else may enter. Names of files within it are ours: no '/', nothing from outside. */
@@ -31,5 +32,9 @@ CP_MUST_CHECK cp_status cp_scratch_read(const cp_scratch *scratch, const char *n
  * such program, CP_RUN_FAILED when it cannot be started. */
 CP_MUST_CHECK cp_status cp_scratch_run(const cp_scratch *scratch, const char *const word[],
                                        int *code, cp_error *error);
+
+/* A file without a name in $TMPDIR (or /tmp), for reading and writing; it is gone when closed. NULL
+ * with errno when there can be none. */
+FILE *cp_scratch_file(void);
 
 #endif

@@ -2,6 +2,7 @@
 #include "run/child.h"
 
 #include "core/progress.h"
+#include "core/scratch.h"
 #include "run/child_environment.h"
 #include "run/worker.h"
 
@@ -100,7 +101,7 @@ cp_status cp_child_start(const char *program, const char *const *arguments, cp_c
 {
     int ends[2] = {-1, -1};
     *child = (cp_child){.report = -1, .started_s = cp_clock_s()};
-    child->messages = tmpfile();
+    child->messages = cp_scratch_file();
     int failed = child->messages == NULL || pipe(ends) != 0 ? errno : 0;
     if (failed == 0) {
         // None of ours reaches the other children.

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 // What the study is: the same in all its parts, row by row.
 static const char *const STUDY_TABLE[] = {"study", "scenario", "variant", "vehicle_model",
@@ -271,10 +272,15 @@ static cp_status take_all(cp_store *store, const char *path, cp_merge_count *cou
 }
 
 // Look at the part as a database of its own first: whose it is, and its version.
-static cp_status check_part(const char *path, cp_error *error)
+static cp_status check_part(cp_store *store, const char *path, cp_error *error)
 {
     cp_store *part = NULL;
     int64_t studies = 0;
+    struct stat own, entry;
+    if (stat(cp_store_path(store), &own) == 0 && stat(path, &entry) == 0 &&
+        own.st_dev == entry.st_dev && own.st_ino == entry.st_ino)
+        return cp_fail(error, CP_BAD_INPUT, "%s: cannot be merged into itself (%s)", path,
+                       cp_store_path(store));
     cp_status status = cp_store_open(path, CP_STORE_READ, &part, error);
     if (status == CP_OK)
         status = cp_store_integer(part, "reading", "SELECT count(*) FROM study", &studies, error);
@@ -287,7 +293,7 @@ static cp_status check_part(const char *path, cp_error *error)
 cp_status cp_merge(cp_store *store, const char *path, cp_merge_count *count, cp_error *error)
 {
     *count = (cp_merge_count){0};
-    cp_status status = check_part(path, error);
+    cp_status status = check_part(store, path, error);
     char *file_name = cp_store_file_name(path);
     if (status == CP_OK && file_name == NULL)
         status = cp_fail_memory(error, path);

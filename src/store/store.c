@@ -51,7 +51,12 @@ cp_status cp_store_fail(cp_store *store, cp_error *error, const char *what)
         status = CP_BUSY;
     else if (code == SQLITE_NOMEM)
         status = CP_NO_MEMORY;
-    return cp_fail(error, status, "%s: %s: %s", store->path, what, sqlite3_errmsg(store->handle));
+    // SQLite says that input or output failed; the system, why: no space, no rights.
+    bool outside = code == SQLITE_IOERR || code == SQLITE_FULL || code == SQLITE_CANTOPEN;
+    int why = outside ? sqlite3_system_errno(store->handle) : 0;
+    return cp_fail(error, status, "%s: %s: %s%s%s", store->path, what,
+                   sqlite3_errmsg(store->handle), why != 0 ? ": " : "",
+                   why != 0 ? strerror(why) : "");
 }
 
 // ---- statements ----------------------------------------------------------------------------

@@ -43,6 +43,10 @@ static void a_program_works_within_and_nothing_stays(void **state)
     assert_int_equal(cp_scratch_run(&scratch, NONE, &code, &error), CP_BAD_INPUT);
     cp_scratch_close(&scratch);
     assert_int_equal(access(path, F_OK), -1);
+    FILE *file = cp_scratch_file();
+    assert_non_null(file);
+    assert_true(fputs("text", file) >= 0 && fseek(file, 0, SEEK_SET) == 0 && fgetc(file) == 't');
+    fclose(file);
 }
 
 static void a_folder_that_cannot_be_made_is_named(void **state)
@@ -52,6 +56,7 @@ static void a_folder_that_cannot_be_made_is_named(void **state)
     cp_error error = {0};
     assert_int_equal(setenv("TMPDIR", "/no/such/folder", 1), 0);
     assert_int_equal(cp_scratch_open(&scratch, &error), CP_IO_FAILED);
+    assert_null(cp_scratch_file());
     assert_non_null(strstr(error.text, "/no/such/folder"));
     cp_scratch_close(&scratch);
 }

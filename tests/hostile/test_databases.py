@@ -120,6 +120,14 @@ with tempfile.TemporaryDirectory() as name:
         tried += 3
     assert sqlite3.connect(db).execute("SELECT variant FROM olc_by_variant").fetchone() != ("a lie",)
 
+    # A database is not merged into itself, by whatever name.
+    shutil.copy(folder / "list.db", folder / "self.db")
+    os.symlink("self.db", folder / "linked.db")
+    os.link(folder / "self.db", folder / "twin.db")
+    for words in (("./self.db", "self.db"), ("self.db", "linked.db"), ("twin.db", "self.db")):
+        assert b"into itself" in run(folder, "merge", *words, expect=2).stderr
+        tried += 1
+
     # Rows: every column of every table with what no program of ours writes.
     odd = ("1e308", "-1e308", "9e999", "-9e999", "-1", "0", "9223372036854775807",
            "-9223372036854775808", "1e-308", "'text'", "''", "x'00ff'", "NULL", "zeroblob(300)",

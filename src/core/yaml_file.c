@@ -175,7 +175,9 @@ bool cp_parse_number(const char *text, double *value)
     char *end = NULL;
     errno = 0;
     double number = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(number) || errno == ERANGE)
+    // strtod takes hexadecimal numbers too; nobody means them.
+    if (end == text || *end != '\0' || !isfinite(number) || errno == ERANGE ||
+        strpbrk(text, "xX") != NULL)
         return false;
     *value = number;
     return true;

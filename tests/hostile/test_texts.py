@@ -23,8 +23,8 @@ NAMES = ("`touch owned`", "$(touch owned)", "x\"; system \"touch owned\"; #", "'
          "\x1b]0;owned\x07\x1b[2J", "a\ncrashpulse: error: forged\n!touch owned", "\x9b31m",
          "=HYPERLINK(\"http://x\")", "+1+cmd|' /C calc'!A0", "-2+3", "@SUM(1)", "\u202eabc",
          "</script><script>document.title='owned'</script>", "%n%s%n", "<img src=x onerror=alert(1)>")
-TEXTS = (("variant", "name"), ("scenario", "name"), ("risk_function", "name"), ("risk_function", "level"),
-         ("risk_function", "source"), ("study", "name"))
+TEXTS = (("variant", "name"), ("scenario", "name"), ("study", "name"), ("risk_function", "name"),
+         ("risk_function", "level"), ("risk_function", "source"))
 
 
 def run(folder, *words, expect=(0,)):
@@ -42,7 +42,7 @@ def check_terminal(words, out):
     """Neither controls nor lines that a name brought along."""
     text = out.decode("utf-8")
     for c in text:
-        if (ord(c) < 32 and c != "\n") or 0x7f <= ord(c) < 0xa0 or c == "\u202e":
+        if (ord(c) < 32 and c not in "\n\t") or 0x7f <= ord(c) < 0xa0 or c == "\u202e":
             sys.exit(f"{words}: control character {c!r} in {text!r}")
     if any(line.startswith(("crashpulse: error: forged", "!touch")) for line in text.splitlines()):
         sys.exit(f"{words}: a forged line in {text!r}")
@@ -52,31 +52,28 @@ shown = 0
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     for hostile in NAMES:
+        # One row of each table takes the name.
+        shutil.copy(a.db, folder / "study.db")
+        connection = sqlite3.connect(folder / "study.db")
+        connection.execute("PRAGMA foreign_keys=OFF")
         for table, column in TEXTS:
-            shutil.copy(a.db, folder / "study.db")
-            connection = sqlite3.connect(folder / "study.db")
-            connection.execute("PRAGMA foreign_keys=OFF")
-            key = "id" if table in ("variant", "scenario", "study") else "name || level"
+            key = "id" if table in ("variant", "scenario", "study") else "source"
             connection.execute(f"UPDATE {table} SET {column} = ? WHERE {key} = (SELECT max({key}) "
                                f"FROM {table})", (hostile,))
-            if (table, column) == ("variant", "name"):
-                connection.execute("UPDATE replication SET status='failed' WHERE id = (SELECT "
-                                   "max(id) FROM replication)")
-            connection.commit()
-            connection.close()
-            asked = [["sql", "study.db", f"SELECT {column} FROM {table}"]]
-            if column == "name":
-                asked += [["compare", "study.db"], ["status", "study.db"]]
-            if table == "variant":
-                asked += [["compare", "study.db", "--baseline", hostile]]
-            for words in asked:
-                result = run(folder, *words, expect=(0, 2) if "--baseline" in words else (0,))
-                check_terminal(words, result.stdout)
-                check_terminal(words, result.stderr)
-                shown += 1
-            for kind in {"variant": ("olc",), "risk_function": ("benefit",)}.get(table, ()):
-                run(folder, "plot", "study.db", kind, "--output", "f.svg")
-                shown += 1
+        connection.execute("UPDATE replication SET status='failed' WHERE id = (SELECT max(id) FROM "
+                           "replication)")
+        connection.commit()
+        connection.close()
+        for words in (["compare", "study.db"], ["status", "study.db"],
+                      ["sql", "study.db", "SELECT name, level, source FROM risk_function"],
+                      ["compare", "study.db", "--baseline", hostile + "?"],
+                      ["plot", "study.db", "olc", "--output", "f.svg"],
+                      ["plot", "study.db", "benefit", "--output", "f.svg"],
+                      ["report", "study.db", "--output", "f.html"]):
+            result = run(folder, *words, expect=(2,) if "--baseline" in words else (0,))
+            check_terminal(words, result.stdout)
+            check_terminal(words, result.stderr)
+            shown += 1
         # A table of texts as CSV and JSON: no formula; all bytes.
         out = run(folder, "sql", "study.db", "SELECT name, 1 FROM study", "-f", "csv").stdout.decode()
         cell = list(csv.reader(io.StringIO(out, newline="")))[1][0]
@@ -107,9 +104,11 @@ with tempfile.TemporaryDirectory() as name:
         shutil.copy(folder / "study.db", folder / odd)
         result = run(folder, "sql", "-f", "csv", "--", odd, "SELECT count(*) FROM replication")
         assert result.stdout.splitlines()[1] != b"0", odd
-        environment = dict(os.environ)
+        # The shell loads our extension: with sanitizers their runtime comes first.
+        environment = dict(os.environ, LD_PRELOAD=os.environ.get("CRASHPULSE_PRELOAD", ""))
         result = subprocess.run([a.crashpulse, "sql", "-f", "csv", "--", odd], cwd=folder,
-                                input=b"SELECT count(*) FROM replication;", capture_output=True)
+                                env=environment, input=b"SELECT count(*) FROM replication;",
+                                capture_output=True)
         assert result.returncode == 0 and int(result.stdout.split()[1]) > 0, (odd, result)
         shown += 2
     result = run(folder, "merge", "--", "file:new.db?mode=memory", "file:x")

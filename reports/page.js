@@ -756,6 +756,27 @@
     };
   });
 
+  // The scorecard that ships with the program: a line a class, a column a vehicle.
+  const scorecard = d3.csvParse(document.getElementById("scorecard").textContent.trim());
+  const scorecardTable = tableSection("scorecard", null, function () {
+    const vehicles = Array.from(new Set(scorecard.map(row => row.vehicle)));
+    const off = row => {
+      const figure = row.bar.startsWith("largest") ? row.max_abs : row.mean_abs;
+      if (figure !== "") return `${row.label} ${+figure} ${row.error_unit === "1" ? "" : row.error_unit}`.trim();
+      return `${row.label}, ${row.note ? row.note.split(",")[0] : `${+row.model} ${row.unit}`}`;
+    };
+    const verdict = rows => {
+      const judged = rows.filter(row => row.result === "kept" || row.result === "missed"), missed = judged.filter(row => row.result === "missed");
+      const compared = rows.filter(row => row.result === "no bar");
+      if (!judged.length) return compared.length ? `no bar; off by: ${compared.map(off).join("; ")}` : "–";
+      return `${judged.length - missed.length} of ${judged.length}${missed.length ? "; missed: " + missed.map(off).join("; ") : ""}`;
+    };
+    return {
+      columns: [{ name: "crash tests", text: true }, ...vehicles.map(name => ({ name: name, text: true }))],
+      rows: Array.from(d3.group(scorecard, row => row.title), ([title, rows]) => [title, ...vehicles.map(name => verdict(rows.filter(row => row.vehicle === name)))])
+    };
+  });
+
   const validityTable = tableSection("validity", "validity", function () {
     const counts = new Map();
     d3.range(data.validity_counts.length).forEach(k => {
@@ -860,7 +881,7 @@
   const drawings = [rateFigure, ecdfFigure, differenceFigure, pairedFigure, scatterFigure, mapFigure, siteFigure, flowFigure, benefitFigure, corridorFigure, gallery].filter(Boolean);
   function update() {
     cards();
-    [exposureTable, quantileTable, contrastTable, injuryTable, precisionTable, validityTable].forEach(draw => draw());
+    [exposureTable, quantileTable, contrastTable, injuryTable, precisionTable, validityTable, scorecardTable].forEach(draw => draw());
     drawings.forEach(draw => draw());
   }
 

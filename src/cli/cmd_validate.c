@@ -4,6 +4,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "cli/pulse_validation.h"
+#include "cli/suite_validation.h"
 #include "core/output_files.h"
 
 #include <math.h>
@@ -14,13 +15,14 @@
 typedef struct arguments {
     const char *vehicle_path;
     const char *reference_path; /* either this ... */
-    cp_pulse_source pulse;      /* ... or its path */
+    cp_pulse_source pulse;      /* ... or its path ... */
+    cp_suite_validation suite;  /* ... or its path */
     const char *curves_path;
     long threads;
     cp_format format;
 } arguments;
 
-enum { PULSE = 256, CHANNELS, OFFSET, ANGLE, UNTIL, CURVES };
+enum { PULSE = 256, CHANNELS, OFFSET, ANGLE, UNTIL, CURVES, SUITE, VEHICLE, REFERENCES, CASES };
 
 static const struct argp_option OPTIONS[] = {
     {"reference", 'r', "FILE.csv", 0,
@@ -35,6 +37,18 @@ static const struct argp_option OPTIONS[] = {
     {"angle", ANGLE, "DEG", 0, "angle of the barrier in the pulse's test (default 0)", 0},
     {"until", UNTIL, "MS", 0, "compare pulses from first contact to here (default 120)", 0},
     {"curves", CURVES, "FILE.csv", 0, "write both pulses side by side", 0},
+    {"suite", SUITE, "FILE.yaml", 0,
+     "run every crash test of a suite instead and print how far the vehicles lie from them, a row "
+     "a "
+     "class, vehicle and quantity",
+     1},
+    {"vehicle", VEHICLE, "NAME|FILE", 0,
+     "judge this vehicle instead of the suite's: a shipped name or a file; may be repeated", 1},
+    {"references", REFERENCES, "DIR", 0,
+     "where the reference tables of a suite lie that do not ship (default: shared/reference beside "
+     "the project's folder); classes whose table is absent are skipped",
+     1},
+    {"cases", CASES, NULL, 0, "list every case of the suite", 1},
     {"threads", 'j', "N", 0, "simulate on N threads (default: as many as cores)", 0},
     {0},
 };
@@ -60,6 +74,15 @@ static void read_channels(const char *text, cp_pulse_source *pulse, struct argp_
 
 static void check(const arguments *a, struct argp_state *state)
 {
+    if (a->suite.path != NULL && (a->vehicle_path != NULL || a->reference_path != NULL ||
+                                  a->pulse.path != NULL || a->curves_path != NULL))
+        argp_error(state, "--suite names its vehicles and references itself; choose vehicles with "
+                          "--vehicle");
+    if (a->suite.path == NULL &&
+        (a->suite.vehicle_count > 0 || a->suite.references != NULL || a->suite.list_cases))
+        argp_error(state, "--vehicle, --references and --cases go with --suite");
+    if (a->suite.path != NULL)
+        return;
     if (a->vehicle_path == NULL)
         argp_error(state, "which vehicle? VEHICLE.yaml is missing");
     if (a->reference_path == NULL && a->pulse.path == NULL)
@@ -98,6 +121,20 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case CURVES:
         a->curves_path = argument;
         return 0;
+    case SUITE:
+        a->suite.path = argument;
+        return 0;
+    case VEHICLE:
+        if (a->suite.vehicle_count == CP_SUITE_VEHICLES_MAX)
+            argp_error(state, "at most %d times --vehicle", CP_SUITE_VEHICLES_MAX);
+        a->suite.vehicles[a->suite.vehicle_count++] = argument;
+        return 0;
+    case REFERENCES:
+        a->suite.references = argument;
+        return 0;
+    case CASES:
+        a->suite.list_cases = true;
+        return 0;
     case 'j':
         a->threads = cp_args_integer(state, "--threads", argument, 1, 64);
         return 0;
@@ -119,16 +156,19 @@ static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}}
 static const struct argp ARGP = {
     .options = OPTIONS,
     .parser = parse,
-    .args_doc = "VEHICLE.yaml",
+    .args_doc = "VEHICLE.yaml\n--suite FILE.yaml",
     .doc = "Hold a vehicle model against reference OLC values: every configuration is simulated "
            "against the barrier of the vehicle file; errors are model minus reference, in g. Or "
-           "against the pulse of one test at its speed."
+           "against the pulse of one test at its speed. Or vehicles against all tests of a suite: "
+           "bias and mean absolute error, the share inside the tests' 5-95 % corridor, the bar and "
+           "whether it is kept."
            "\v"
            "Examples:\n"
            "  crashpulse validate db/vehicles/honda_accord_2014.yaml \\\n"
            "    --reference db/reference/olc_accord_2014.csv --format json\n"
            "  crashpulse validate db/vehicles/toyota_camry_2018.yaml \\\n"
-           "    --pulse nhtsa_v10146 --channels 93,94\n",
+           "    --pulse nhtsa_v10146 --channels 93,94\n"
+           "  crashpulse validate --suite db/validation/suite.yaml --vehicle small_car --cases\n",
     .children = CHILDREN,
 };
 
@@ -249,6 +289,10 @@ cp_status cmd_validate(int argc, char **argv, cp_error *error)
     arguments a = {.threads = cores > 0 && cores < 64 ? cores : 1,
                    .pulse = {.speed_km_h = NAN, .until_s = 0.12, .weight_1 = 1.0}};
     cp_args_parse(&ARGP, argc, argv, &a);
+    if (a.suite.path != NULL) {
+        a.suite.threads = (int)a.threads;
+        return cp_suite_validate(&a.suite, a.format, error);
+    }
 
     cp_vehicle_model model;
     const char *const inputs[] = {a.vehicle_path, a.reference_path, a.pulse.path};

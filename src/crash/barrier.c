@@ -23,11 +23,11 @@ cp_outline cp_barrier_outline(const cp_barrier *barrier, cp_pose pose)
 
 cp_status cp_barrier_validate(const cp_barrier *barrier, cp_error *error)
 {
-    if (!(barrier->width_m >= 0.3 && barrier->width_m <= 20.0))
-        return cp_fail(error, CP_BAD_INPUT, "barrier width_m must be between 0.3 and 20, found %g",
+    if (!(barrier->width_m >= 0.2 && barrier->width_m <= 20.0))
+        return cp_fail(error, CP_BAD_INPUT, "barrier width_m must be between 0.2 and 20, found %g",
                        barrier->width_m);
-    if (!(barrier->depth_m >= 0.3 && barrier->depth_m <= 20.0))
-        return cp_fail(error, CP_BAD_INPUT, "barrier depth_m must be between 0.3 and 20, found %g",
+    if (!(barrier->depth_m >= 0.2 && barrier->depth_m <= 20.0))
+        return cp_fail(error, CP_BAD_INPUT, "barrier depth_m must be between 0.2 and 20, found %g",
                        barrier->depth_m);
     const double rounding_m = 1e-6; // of numbers in a file
     double largest_m = 0.5 * fmin(barrier->width_m, barrier->depth_m);

@@ -13,6 +13,7 @@ extern const unsigned char cp_page_css[];
 extern const unsigned char cp_page_js[];
 extern const unsigned char cp_page_d3_notice[];
 extern const unsigned char cp_page_d3[];
+extern const unsigned char cp_scorecard_csv[]; /* db/validation/scorecard.csv */
 
 static cp_status write_page(const cp_study_data *data, const json_t *page_data, const char *answer,
                             const char *path, cp_error *error)
@@ -36,6 +37,7 @@ static cp_status write_page(const cp_study_data *data, const json_t *page_data, 
         {"d3_notice", notice},
         {"script", (const char *)cp_page_js},
         {"data", json},
+        {"scorecard", (const char *)cp_scorecard_csv},
     };
     status = cp_page_fill((const char *)cp_page_html, parts, sizeof parts / sizeof *parts, &page,
                           &size, error);

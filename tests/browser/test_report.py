@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A report in a headless browser: no errors, no requests, filters agree with SQL, three widths."""
 import argparse
+import csv
 import json
 import pathlib
 import re
@@ -20,7 +21,8 @@ parser.add_argument("--any-study", action="store_true", help="only what holds fo
 ARGS = parser.parse_args()
 OUTPUT = pathlib.Path(ARGS.output)
 REPORT = OUTPUT / "report.html"
-ANY_STUDY = ["requests_nothing_but_itself", "filters_agree_with_sql", "scope_shows_the_vehicles_inside_only", "sites_agree_with_sql",
+SCORECARD = pathlib.Path(__file__).resolve().parents[2] / "db" / "validation" / "scorecard.csv"
+ANY_STUDY = ["the_scorecard_has_a_line_a_class", "requests_nothing_but_itself", "filters_agree_with_sql", "scope_shows_the_vehicles_inside_only", "sites_agree_with_sql",
              "a_pair_is_a_seed_run_with_both", "every_figure_has_words_and_a_table", "three_widths_and_two_themes"]
 
 FIGURES = ["figure-rate", "figure-ecdf", "figure-difference", "figure-paired", "figure-scatter", "figure-map", "figure-sites",
@@ -73,6 +75,23 @@ class Report(unittest.TestCase):
 
     def count(self, sql, *values):
         return self.db.execute(sql, values).fetchone()[0]
+
+    def test_the_scorecard_has_a_line_a_class(self):
+        with open(SCORECARD, encoding="utf-8") as file:
+            shipped = list(csv.DictReader(file))
+        head, *lines = self.browser.run(
+            "return Array.from(document.querySelectorAll('#table-scorecard tr'), "
+            "row => Array.from(row.cells, cell => cell.textContent))")
+        self.assertEqual([line[0] for line in lines], list(dict.fromkeys(row["title"] for row in shipped)))
+        self.assertEqual(head[1:], list(dict.fromkeys(row["vehicle"] for row in shipped)))
+        for line in lines:
+            for vehicle, cell in zip(head[1:], line[1:]):
+                results = [row["result"] for row in shipped
+                           if row["title"] == line[0] and row["vehicle"] == vehicle]
+                kept, missed = results.count("kept"), results.count("missed")
+                expected = f"{kept} of {kept + missed}" if kept + missed else "no bar" if "no bar" in results else "–"
+                self.assertEqual(cell.split(";")[0], expected, line)
+                self.assertEqual("missed" in cell, missed > 0)
 
     def test_requests_nothing_but_itself(self):
         urls = []

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CALIBRATE_CSV_TABLE_H
+#define CALIBRATE_CSV_TABLE_H
+
+#include "core/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* A CSV file with a header and named columns, as the reference tables of a suite are. Lines that
+ * begin with '#' are comments, empty ones do not count. No quotes. */
+typedef struct cp_csv_table {
+    char *path;
+    char *content; /* the fields point into it */
+    size_t *line;  /* of each row in the file, from 1 */
+    char **field;  /* row by row, column_count each */
+    char **column; /* names */
+    size_t column_count;
+    size_t row_count;
+} cp_csv_table;
+
+/* Load. Errors: CP_BAD_INPUT with file and line (a row of another number of fields, no row at all).
+ * The caller destroys, also after an error. */
+CP_MUST_CHECK cp_status cp_csv_table_load(const char *path, cp_csv_table *table, cp_error *error);
+void cp_csv_table_destroy(cp_csv_table *table);
+
+/* Text of a column in a row. Errors: CP_BAD_INPUT naming a column that is missing. */
+CP_MUST_CHECK cp_status cp_csv_table_text(const cp_csv_table *table, size_t row, const char *column,
+                                          const char **text, cp_error *error);
+/* Number within [smallest, largest]; where blank is allowed an empty field is NAN. Errors:
+ * CP_BAD_INPUT with file, line, column, what was found and what is allowed. */
+CP_MUST_CHECK cp_status cp_csv_table_number(const cp_csv_table *table, size_t row,
+                                            const char *column, double smallest, double largest,
+                                            bool blank_allowed, double *value, cp_error *error);
+
+#endif

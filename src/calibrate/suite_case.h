@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CALIBRATE_SUITE_CASE_H
+#define CALIBRATE_SUITE_CASE_H
+
+#include "calibrate/suite_file.h"
+#include "crash/vehicle_model.h"
+
+/* The cases of a class for one vehicle, and what is simulated for one of them. */
+
+enum { CP_SUITE_OFFSETS_MAX = 16 };
+
+typedef struct cp_suite_case {
+    char label[96];
+    cp_vehicle_model model[2]; /* [1] with is_pair only */
+    bool is_pair;
+    bool has_barrier; /* with is_pair: the first car meets it too, for comparison */
+    cp_barrier barrier;
+    double speed_m_s[2];
+    double angle_rad;
+    double side_1; /* +1: the opponent stands to the left */
+    /* Offsets of the opponent; more than one where the test's is not known. */
+    double offset_m[CP_SUITE_OFFSETS_MAX];
+    size_t offset_count;
+    bool is_placed; /* by configuration instead of offset and angle */
+    cp_crash_configuration configuration;
+    double reference[2][CP_SUITE_QUANTITY_COUNT]; /* of the test's two cars; NAN: none */
+} cp_suite_case;
+
+typedef struct cp_suite_cases {
+    cp_suite_case *row; /* owned */
+    size_t count;
+    char skipped[256]; /* why there are none; "" otherwise */
+} cp_suite_cases;
+
+/* How many cars of a case a quantity is taken of: 1 or 2. */
+int cp_suite_case_cars(const cp_suite_class *class, const cp_suite_comparison *comparison);
+
+/* Load a vehicle by a shipped name or, with a '/' or a '.', by a path seen from the folder of base
+ * (NULL: as it is). Errors: CP_BAD_INPUT naming what is allowed. */
+CP_MUST_CHECK cp_status cp_suite_vehicle(const char *base, const char *text,
+                                         cp_vehicle_model *model, cp_error *error);
+
+/* Cases of a class for a vehicle. references: folder of the reference tables; a table that is not
+ * there leaves no case and says so in skipped. Errors: CP_BAD_INPUT from a table or an opponent,
+ * CP_NO_MEMORY. The caller destroys, also after an error. */
+CP_MUST_CHECK cp_status cp_suite_cases_of(const cp_suite *suite, const cp_suite_class *class,
+                                          const cp_vehicle_model *vehicle, const char *references,
+                                          cp_suite_cases *cases, cp_error *error);
+void cp_suite_cases_destroy(cp_suite_cases *cases);
+
+/* Simulate a case at offset number index. wall (when the case is of a pair and has a barrier too)
+ * is the first car against that; zeroed otherwise. The caller destroys both results. */
+CP_MUST_CHECK cp_status cp_suite_case_simulate(const cp_suite_case *row, size_t index,
+                                               cp_crash_result *result, cp_crash_result *wall,
+                                               cp_error *error);
+
+#endif

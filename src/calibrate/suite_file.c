@@ -1,0 +1,609 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "calibrate/suite_file.h"
+
+#include "core/file.h"
+#include "core/yaml_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- what the file may hold --------------------------------------------------------------------
+
+typedef struct yaml_bar {
+    char *inside_1;
+    char *mean_abs;
+    char *median_abs;
+    char *p90_abs;
+    char *max_abs;
+    char *max_step;
+    char *falling;
+    char *last_is_highest;
+} yaml_bar;
+
+// A list as libcyaml fills it.
+#define LIST(name)                                                                                 \
+    char **name;                                                                                   \
+    unsigned name##_count
+
+typedef struct yaml_comparison {
+    char *quantity;
+    LIST(times_ms);
+    char *population;
+    LIST(reference);
+    LIST(low);
+    LIST(high);
+    char *relative;
+    char *car;
+    yaml_bar *bar;
+} yaml_comparison;
+
+typedef struct yaml_barrier {
+    char *width_m;
+    char *depth_m;
+    char *corner_radius_m;
+} yaml_barrier;
+
+typedef struct yaml_table {
+    char *form;
+    char *file;
+    char *references_file;
+    LIST(rows_with);
+} yaml_table;
+
+typedef struct yaml_sweep {
+    char *from_1;
+    char *to_1;
+    char *count;
+} yaml_sweep;
+
+typedef struct yaml_class {
+    char *name;
+    char *title;
+    char *note;
+    LIST(vehicles);
+    yaml_table *table;
+    LIST(speeds_km_h);
+    LIST(opponent_speeds_km_h);
+    LIST(overlaps_1);
+    yaml_sweep *overlap_sweep;
+    LIST(sides);
+    LIST(angles_deg);
+    yaml_barrier *barrier;
+    LIST(against);
+    yaml_comparison *compare;
+    unsigned compare_count;
+} yaml_class;
+
+typedef struct yaml_suite {
+    char *suite;
+    char *description;
+    char *quantiles;
+    LIST(vehicles);
+    yaml_class *classes;
+    unsigned classes_count;
+} yaml_suite;
+
+#define TEXT(key, type)                                                                            \
+    CYAML_FIELD_STRING_PTR(#key, CYAML_FLAG_POINTER, type, key, 0, CYAML_UNLIMITED)
+#define OPTIONAL_TEXT(key, type)                                                                   \
+    CYAML_FIELD_STRING_PTR(#key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, type, key, 0,           \
+                           CYAML_UNLIMITED)
+#define OPTIONAL_LIST(key, type)                                                                   \
+    CYAML_FIELD_SEQUENCE(#key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, type, key, &WORD_VALUE,   \
+                         1, CP_SUITE_LIST_MAX)
+#define OPTIONAL_MAPPING(key, type, fields)                                                        \
+    CYAML_FIELD_MAPPING_PTR(#key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, type, key, fields)
+
+static const cyaml_schema_value_t WORD_VALUE = {
+    CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char, 0, CYAML_UNLIMITED)};
+
+static const cyaml_schema_field_t BAR_FIELDS[] = {OPTIONAL_TEXT(inside_1, yaml_bar),
+                                                  OPTIONAL_TEXT(mean_abs, yaml_bar),
+                                                  OPTIONAL_TEXT(median_abs, yaml_bar),
+                                                  OPTIONAL_TEXT(p90_abs, yaml_bar),
+                                                  OPTIONAL_TEXT(max_abs, yaml_bar),
+                                                  OPTIONAL_TEXT(max_step, yaml_bar),
+                                                  OPTIONAL_TEXT(falling, yaml_bar),
+                                                  OPTIONAL_TEXT(last_is_highest, yaml_bar),
+                                                  CYAML_FIELD_END};
+
+static const cyaml_schema_field_t COMPARISON_FIELDS[] = {
+    TEXT(quantity, yaml_comparison),
+    OPTIONAL_LIST(times_ms, yaml_comparison),
+    OPTIONAL_TEXT(population, yaml_comparison),
+    OPTIONAL_LIST(reference, yaml_comparison),
+    OPTIONAL_LIST(low, yaml_comparison),
+    OPTIONAL_LIST(high, yaml_comparison),
+    OPTIONAL_TEXT(relative, yaml_comparison),
+    OPTIONAL_TEXT(car, yaml_comparison),
+    OPTIONAL_MAPPING(bar, yaml_comparison, BAR_FIELDS),
+    CYAML_FIELD_END};
+static const cyaml_schema_value_t COMPARISON_VALUE = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, yaml_comparison, COMPARISON_FIELDS)};
+
+static const cyaml_schema_field_t BARRIER_FIELDS[] = {
+    TEXT(width_m, yaml_barrier), TEXT(depth_m, yaml_barrier), TEXT(corner_radius_m, yaml_barrier),
+    CYAML_FIELD_END};
+
+static const cyaml_schema_field_t TABLE_FIELDS[] = {
+    TEXT(form, yaml_table), OPTIONAL_TEXT(file, yaml_table),
+    OPTIONAL_TEXT(references_file, yaml_table), OPTIONAL_LIST(rows_with, yaml_table),
+    CYAML_FIELD_END};
+
+static const cyaml_schema_field_t SWEEP_FIELDS[] = {
+    TEXT(from_1, yaml_sweep), TEXT(to_1, yaml_sweep), TEXT(count, yaml_sweep), CYAML_FIELD_END};
+
+static const cyaml_schema_field_t CLASS_FIELDS[] = {
+    CYAML_FIELD_STRING_PTR("class", CYAML_FLAG_POINTER, yaml_class, name, 0, CYAML_UNLIMITED),
+    TEXT(title, yaml_class),
+    OPTIONAL_TEXT(note, yaml_class),
+    OPTIONAL_LIST(vehicles, yaml_class),
+    OPTIONAL_MAPPING(table, yaml_class, TABLE_FIELDS),
+    OPTIONAL_LIST(speeds_km_h, yaml_class),
+    OPTIONAL_LIST(opponent_speeds_km_h, yaml_class),
+    OPTIONAL_LIST(overlaps_1, yaml_class),
+    OPTIONAL_MAPPING(overlap_sweep, yaml_class, SWEEP_FIELDS),
+    OPTIONAL_LIST(sides, yaml_class),
+    OPTIONAL_LIST(angles_deg, yaml_class),
+    OPTIONAL_MAPPING(barrier, yaml_class, BARRIER_FIELDS),
+    OPTIONAL_LIST(against, yaml_class),
+    CYAML_FIELD_SEQUENCE("compare", CYAML_FLAG_POINTER, yaml_class, compare, &COMPARISON_VALUE, 1,
+                         CP_SUITE_COMPARISONS_MAX),
+    CYAML_FIELD_END};
+static const cyaml_schema_value_t CLASS_VALUE = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, yaml_class, CLASS_FIELDS)};
+
+static const cyaml_schema_field_t SUITE_FIELDS[] = {
+    TEXT(suite, yaml_suite),
+    OPTIONAL_TEXT(description, yaml_suite),
+    OPTIONAL_TEXT(quantiles, yaml_suite),
+    CYAML_FIELD_SEQUENCE("vehicles", CYAML_FLAG_POINTER, yaml_suite, vehicles, &WORD_VALUE, 1,
+                         CP_SUITE_LIST_MAX),
+    CYAML_FIELD_SEQUENCE("classes", CYAML_FLAG_POINTER, yaml_suite, classes, &CLASS_VALUE, 1,
+                         CP_SUITE_LIST_MAX),
+    CYAML_FIELD_END};
+static const cyaml_schema_value_t SUITE_VALUE = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, yaml_suite, SUITE_FIELDS)};
+
+// ---- single values -----------------------------------------------------------------------------
+
+// Where in the file we are: the key path of a class or of one of its comparisons.
+typedef struct place {
+    const cp_yaml_file *file;
+    char path[96];
+    cp_error *error;
+} place;
+
+static const char *key_at(const place *at, const char *key, char *text, size_t size)
+{
+    snprintf(text, size, "%s%s%s", at->path, at->path[0] != '\0' ? "." : "", key);
+    return text;
+}
+
+static cp_status fail_at(const place *at, const char *key, const char *message, const char *found)
+{
+    char path[192];
+    key_at(at, key, path, sizeof path);
+    return found != NULL ? cp_yaml_fail(at->file, at->error, path, "%s, found '%s'", message, found)
+                         : cp_yaml_fail(at->file, at->error, path, "%s", message);
+}
+
+static cp_status read_number(const place *at, const char *key, const char *text, double smallest,
+                             double largest, double *value)
+{
+    char path[192];
+    return cp_yaml_number(at->file, key_at(at, key, path, sizeof path), text, smallest, largest,
+                          value, at->error);
+}
+
+static cp_status read_text(const place *at, const char *key, const char *text, char *copy,
+                           size_t size)
+{
+    char message[64];
+    snprintf(message, sizeof message, "must have 1 to %zu characters", size - 1);
+    if (text[0] == '\0' || strlen(text) >= size)
+        return fail_at(at, key, message, text);
+    snprintf(copy, size, "%s", text);
+    return CP_OK;
+}
+
+static cp_status read_truth(const place *at, const char *key, const char *text, bool *value)
+{
+    *value = text != NULL && strcmp(text, "yes") == 0;
+    return text == NULL || *value || strcmp(text, "no") == 0
+               ? CP_OK
+               : fail_at(at, key, "must be yes or no", text);
+}
+
+static cp_status read_numbers(const place *at, const char *key, char *const *texts, unsigned count,
+                              double smallest, double largest, cp_suite_numbers *numbers)
+{
+    if (count == 0)
+        return CP_OK;
+    numbers->value = calloc(count, sizeof *numbers->value);
+    if (numbers->value == NULL)
+        return cp_fail_memory(at->error, at->file->path);
+    cp_status status = CP_OK;
+    for (unsigned k = 0; status == CP_OK && k < count; k++) {
+        char item[64];
+        snprintf(item, sizeof item, "%s[%u]", key, k);
+        status = read_number(at, item, texts[k], smallest, largest, &numbers->value[k]);
+    }
+    numbers->count = count;
+    return status;
+}
+
+static cp_status copy_texts(const place *at, char *const *texts, unsigned count,
+                            cp_suite_texts *copies)
+{
+    if (count == 0)
+        return CP_OK;
+    copies->text = calloc(count, sizeof *copies->text);
+    if (copies->text == NULL)
+        return cp_fail_memory(at->error, at->file->path);
+    for (unsigned k = 0; k < count; k++) {
+        copies->text[k] = strdup(texts[k]);
+        if (copies->text[k] == NULL)
+            return cp_fail_memory(at->error, at->file->path);
+        copies->count++;
+    }
+    return CP_OK;
+}
+
+// ---- comparisons -------------------------------------------------------------------------------
+
+static cp_status read_bar(const place *at, const yaml_bar *yaml, cp_suite_bar *bar)
+{
+    static const yaml_bar NONE = {0};
+    *bar = (cp_suite_bar){.inside_1 = NAN,
+                          .mean_abs = NAN,
+                          .median_abs = NAN,
+                          .p90_abs = NAN,
+                          .max_abs = NAN,
+                          .max_step = NAN};
+    if (yaml == NULL)
+        yaml = &NONE;
+    const struct {
+        const char *key;
+        const char *text;
+        double largest;
+        double *value;
+    } fields[] = {{"bar.inside_1", yaml->inside_1, 1.0, &bar->inside_1},
+                  {"bar.mean_abs", yaml->mean_abs, 1e6, &bar->mean_abs},
+                  {"bar.median_abs", yaml->median_abs, 1e6, &bar->median_abs},
+                  {"bar.p90_abs", yaml->p90_abs, 1e6, &bar->p90_abs},
+                  {"bar.max_abs", yaml->max_abs, 1e6, &bar->max_abs},
+                  {"bar.max_step", yaml->max_step, 1e6, &bar->max_step}};
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < sizeof fields / sizeof *fields; k++)
+        status =
+            read_number(at, fields[k].key, fields[k].text, 0.0, fields[k].largest, fields[k].value);
+    if (status == CP_OK)
+        status = read_truth(at, "bar.falling", yaml->falling, &bar->falling);
+    if (status == CP_OK)
+        status =
+            read_truth(at, "bar.last_is_highest", yaml->last_is_highest, &bar->last_is_highest);
+    return status;
+}
+
+// That what the bar is about is there.
+static cp_status check_comparison(const place *at, const yaml_comparison *yaml,
+                                  const cp_suite_comparison *comparison)
+{
+    const cp_suite_bar *bar = &comparison->bar;
+    bool corridor = comparison->population[0] != '\0' || comparison->low.count > 0 ||
+                    comparison->high.count > 0;
+    if (cp_suite_quantity_is_timed(comparison->quantity) != (comparison->times_ms.count > 0))
+        return fail_at(at, "times_ms",
+                       comparison->times_ms.count > 0
+                           ? "does not go with this quantity"
+                           : "is missing: the quantity is taken at given instants",
+                       comparison->times_ms.count > 0 ? yaml->quantity : NULL);
+    if (comparison->population[0] != '\0' &&
+        comparison->reference.count + comparison->low.count + comparison->high.count > 0)
+        return fail_at(at, "population", "does not go with reference, low or high", NULL);
+    if (!isnan(bar->inside_1) && !corridor)
+        return fail_at(at, "bar.inside_1", "needs a population, low or high", NULL);
+    return CP_OK;
+}
+
+static cp_status read_comparison(const place *at, const yaml_comparison *yaml,
+                                 cp_suite_comparison *comparison)
+{
+    comparison->quantity = cp_suite_quantity_find(yaml->quantity);
+    if (comparison->quantity == CP_SUITE_QUANTITY_COUNT)
+        return fail_at(at, "quantity", "is none that a suite compares", yaml->quantity);
+    cp_status status = read_numbers(at, "times_ms", yaml->times_ms, yaml->times_ms_count, 1.0,
+                                    390.0, &comparison->times_ms);
+    if (status == CP_OK && yaml->population != NULL)
+        status = read_text(at, "population", yaml->population, comparison->population,
+                           sizeof comparison->population);
+    if (status == CP_OK)
+        status = read_numbers(at, "reference", yaml->reference, yaml->reference_count, -1e6, 1e6,
+                              &comparison->reference);
+    if (status == CP_OK)
+        status = read_numbers(at, "low", yaml->low, yaml->low_count, -1e6, 1e6, &comparison->low);
+    if (status == CP_OK)
+        status =
+            read_numbers(at, "high", yaml->high, yaml->high_count, -1e6, 1e6, &comparison->high);
+    if (status == CP_OK)
+        status = read_truth(at, "relative", yaml->relative, &comparison->relative);
+    if (status == CP_OK && yaml->car != NULL) {
+        comparison->car = strcmp(yaml->car, "1") == 0 ? 1 : strcmp(yaml->car, "2") == 0 ? 2 : 0;
+        if (comparison->car == 0)
+            status = fail_at(at, "car", "must be 1 or 2", yaml->car);
+    }
+    if (status == CP_OK)
+        status = read_bar(at, yaml->bar, &comparison->bar);
+    return status == CP_OK ? check_comparison(at, yaml, comparison) : status;
+}
+
+// ---- classes -----------------------------------------------------------------------------------
+
+static cp_status read_table(const place *at, const yaml_table *yaml, cp_suite_class *class)
+{
+    static const char *const FORM[] = {
+#define FORM_TEXT(name, text) text,
+        CP_SUITE_FORMS(FORM_TEXT)
+#undef FORM_TEXT
+    };
+    class->form = CP_SUITE_LISTS;
+    if (yaml == NULL)
+        return CP_OK;
+    int form = CP_SUITE_OLC;
+    while (form < CP_SUITE_FORM_COUNT && strcmp(yaml->form, FORM[form]) != 0)
+        form++;
+    if (form == CP_SUITE_FORM_COUNT)
+        return fail_at(at, "table.form", "must be olc, separation, oblique or reconstructed",
+                       yaml->form);
+    if ((yaml->file == NULL) == (yaml->references_file == NULL))
+        return fail_at(at, "table", "needs either file or references_file", NULL);
+    class->form = (cp_suite_form)form;
+    class->is_reference = yaml->file == NULL;
+    class->table_path = class->is_reference ? strdup(yaml->references_file)
+                                            : cp_file_beside(at->file->path, yaml->file);
+    if (class->table_path == NULL)
+        return cp_fail_memory(at->error, at->file->path);
+    if ((form == CP_SUITE_SEPARATION) != (yaml->rows_with_count > 0))
+        return fail_at(at, "table.rows_with",
+                       "names the barriers of form separation, and of no other", NULL);
+    return copy_texts(at, yaml->rows_with, yaml->rows_with_count, &class->rows_with);
+}
+
+static cp_status read_barrier(const place *at, const yaml_barrier *yaml, cp_suite_class *class)
+{
+    class->has_barrier = yaml != NULL;
+    class->barrier = cp_barrier_default();
+    if (yaml == NULL)
+        return CP_OK;
+    cp_barrier *barrier = &class->barrier;
+    cp_status status =
+        read_number(at, "barrier.width_m", yaml->width_m, 0.2, 20, &barrier->width_m);
+    if (status == CP_OK)
+        status = read_number(at, "barrier.depth_m", yaml->depth_m, 0.2, 20, &barrier->depth_m);
+    double largest_m = 0.5 * fmin(barrier->width_m, barrier->depth_m);
+    return status == CP_OK ? read_number(at, "barrier.corner_radius_m", yaml->corner_radius_m, 0,
+                                         largest_m, &barrier->corner_radius_m)
+                           : status;
+}
+
+static cp_status read_sweep(const place *at, const yaml_sweep *yaml, cp_suite_class *class)
+{
+    double from_1 = 0.0, to_1 = 0.0, count = 0.0;
+    cp_status status = read_number(at, "overlap_sweep.from_1", yaml->from_1, 0.001, 1.0, &from_1);
+    if (status == CP_OK)
+        status = read_number(at, "overlap_sweep.to_1", yaml->to_1, 0.001, 1.0, &to_1);
+    if (status == CP_OK)
+        status = read_number(at, "overlap_sweep.count", yaml->count, 2, CP_SUITE_LIST_MAX, &count);
+    if (status == CP_OK && count != floor(count))
+        status = fail_at(at, "overlap_sweep.count", "must be a whole number", yaml->count);
+    if (status == CP_OK && class->overlaps_1.count > 0)
+        status = fail_at(at, "overlap_sweep", "does not go with overlaps_1", NULL);
+    if (status != CP_OK)
+        return status;
+    class->overlaps_1.value = calloc((size_t)count, sizeof *class->overlaps_1.value);
+    if (class->overlaps_1.value == NULL)
+        return cp_fail_memory(at->error, at->file->path);
+    class->overlaps_1.count = (size_t)count;
+    for (size_t k = 0; k < class->overlaps_1.count; k++)
+        class->overlaps_1.value[k] = from_1 + (to_1 - from_1) * (double)k / (count - 1.0);
+    return CP_OK;
+}
+
+// "left" and "right" into +1 and -1.
+static cp_status read_sides(const place *at, const yaml_class *yaml, cp_suite_class *class)
+{
+    class->sides_1.value = calloc(yaml->sides_count + 1, sizeof *class->sides_1.value);
+    if (class->sides_1.value == NULL)
+        return cp_fail_memory(at->error, at->file->path);
+    class->sides_1.value[0] = 1.0;
+    class->sides_1.count = yaml->sides_count > 0 ? yaml->sides_count : 1;
+    for (unsigned k = 0; k < yaml->sides_count; k++) {
+        bool left = strcmp(yaml->sides[k], "left") == 0;
+        if (!left && strcmp(yaml->sides[k], "right") != 0)
+            return fail_at(at, "sides", "must be left or right", yaml->sides[k]);
+        class->sides_1.value[k] = left ? 1.0 : -1.0;
+    }
+    return CP_OK;
+}
+
+static cp_status read_lists(const place *at, const yaml_class *yaml, cp_suite_class *class)
+{
+    cp_status status = read_numbers(at, "speeds_km_h", yaml->speeds_km_h, yaml->speeds_km_h_count,
+                                    0.5, 300, &class->speeds_km_h);
+    if (status == CP_OK)
+        status =
+            read_numbers(at, "opponent_speeds_km_h", yaml->opponent_speeds_km_h,
+                         yaml->opponent_speeds_km_h_count, 0, 300, &class->opponent_speeds_km_h);
+    if (status == CP_OK)
+        status = read_numbers(at, "overlaps_1", yaml->overlaps_1, yaml->overlaps_1_count, 0.001, 1,
+                              &class->overlaps_1);
+    if (status == CP_OK)
+        status = read_numbers(at, "angles_deg", yaml->angles_deg, yaml->angles_deg_count, -60, 60,
+                              &class->angles_deg);
+    if (status == CP_OK && yaml->overlap_sweep != NULL)
+        status = read_sweep(at, yaml->overlap_sweep, class);
+    return status == CP_OK ? read_sides(at, yaml, class) : status;
+}
+
+// That the class says what meets what, and nothing that its table says.
+static cp_status check_class(const place *at, const yaml_class *yaml, const cp_suite_class *class)
+{
+    bool by_lists = class->form == CP_SUITE_LISTS, pair = class->against.count > 0;
+    bool listed = class->speeds_km_h.count + class->overlaps_1.count + class->angles_deg.count +
+                      yaml->sides_count + class->against.count >
+                  0;
+    if (by_lists && class->speeds_km_h.count == 0)
+        return fail_at(at, "speeds_km_h", "is missing: a class needs speeds or a table", NULL);
+    if (!by_lists && listed && class->form != CP_SUITE_SEPARATION)
+        return fail_at(at, "table",
+                       "does not go with lists of speeds, overlaps, sides, angles or "
+                       "opponents",
+                       NULL);
+    if (by_lists && !pair && !class->has_barrier)
+        return fail_at(at, "barrier", "is missing: a class needs barrier, against or both", NULL);
+    if (class->form == CP_SUITE_SEPARATION && !class->has_barrier)
+        return fail_at(at, "barrier", "is missing: form separation needs it", NULL);
+    if (class->opponent_speeds_km_h.count > 0 &&
+        (!pair || class->opponent_speeds_km_h.count != class->speeds_km_h.count))
+        return fail_at(at, "opponent_speeds_km_h", "needs against, and one for each of speeds_km_h",
+                       NULL);
+    for (size_t c = 0; c < class->comparison_count; c++) {
+        cp_suite_quantity quantity = class->comparison[c].quantity;
+        bool of_pair = cp_suite_quantity_is_of_pair(quantity);
+        char key[64];
+        snprintf(key, sizeof key, "compare[%zu].quantity", c);
+        bool of_tests = class->form == CP_SUITE_OBLIQUE || class->form == CP_SUITE_RECONSTRUCTED;
+        bool have_pair = pair || of_tests;
+        if (class->comparison[c].car > 0 && !of_tests)
+            return fail_at(at, key, "of one car goes with a table of pairs",
+                           CP_SUITE_QUANTITY_TEXT[quantity]);
+        if (of_pair && !have_pair)
+            return fail_at(at, key, "needs a second car (against)",
+                           CP_SUITE_QUANTITY_TEXT[quantity]);
+        if (quantity == CP_SUITE_wall_difference_pct && !class->has_barrier)
+            return fail_at(at, key, "needs a barrier too", CP_SUITE_QUANTITY_TEXT[quantity]);
+    }
+    return CP_OK;
+}
+
+static cp_status read_class(const place *at, const yaml_class *yaml, cp_suite_class *class)
+{
+    cp_status status = read_text(at, "class", yaml->name, class->name, sizeof class->name);
+    if (status == CP_OK)
+        status = read_text(at, "title", yaml->title, class->title, sizeof class->title);
+    if (status == CP_OK && yaml->note != NULL)
+        status = read_text(at, "note", yaml->note, class->note, sizeof class->note);
+    if (status == CP_OK)
+        status = copy_texts(at, yaml->vehicles, yaml->vehicles_count, &class->vehicles);
+    if (status == CP_OK)
+        status = copy_texts(at, yaml->against, yaml->against_count, &class->against);
+    if (status == CP_OK)
+        status = read_table(at, yaml->table, class);
+    if (status == CP_OK)
+        status = read_barrier(at, yaml->barrier, class);
+    if (status == CP_OK)
+        status = read_lists(at, yaml, class);
+    if (status != CP_OK)
+        return status;
+    class->comparison = calloc(yaml->compare_count, sizeof *class->comparison);
+    if (class->comparison == NULL)
+        return cp_fail_memory(at->error, at->file->path);
+    for (unsigned c = 0; status == CP_OK && c < yaml->compare_count; c++) {
+        place here = {.file = at->file, .error = at->error};
+        snprintf(here.path, sizeof here.path, "%.60s.compare[%u]", at->path, c);
+        class->comparison_count++;
+        status = read_comparison(&here, &yaml->compare[c], &class->comparison[c]);
+    }
+    return status == CP_OK ? check_class(at, yaml, class) : status;
+}
+
+static cp_status read_classes(const cp_yaml_file *file, const yaml_suite *yaml, cp_suite *suite,
+                              cp_error *error)
+{
+    suite->class = calloc(yaml->classes_count, sizeof *suite->class);
+    if (suite->class == NULL)
+        return cp_fail_memory(error, file->path);
+    for (unsigned k = 0; k < yaml->classes_count; k++) {
+        place here = {.file = file, .error = error};
+        snprintf(here.path, sizeof here.path, "classes[%u]", k);
+        suite->class_count++;
+        cp_status status = read_class(&here, &yaml->classes[k], &suite->class[k]);
+        for (unsigned before = 0; status == CP_OK && before < k; before++)
+            if (strcmp(suite->class[before].name, suite->class[k].name) == 0)
+                status = fail_at(&here, "class", "is given twice", suite->class[k].name);
+        if (status != CP_OK)
+            return status;
+    }
+    return CP_OK;
+}
+
+cp_status cp_suite_load(const char *path, cp_suite *suite, cp_error *error)
+{
+    *suite = (cp_suite){0};
+    cp_yaml_file file = {0};
+    cp_status status = cp_yaml_load(path, &SUITE_VALUE, &file, error);
+    if (status != CP_OK)
+        return status;
+    const yaml_suite *yaml = (const yaml_suite *)file.data;
+    place here = {.file = &file, .error = error};
+    suite->path = strdup(path);
+    if (suite->path == NULL)
+        status = cp_fail_memory(error, path);
+    if (status == CP_OK)
+        status = read_text(&here, "suite", yaml->suite, suite->name, sizeof suite->name);
+    if (status == CP_OK && yaml->quantiles != NULL) {
+        suite->quantiles_path = cp_file_beside(path, yaml->quantiles);
+        if (suite->quantiles_path == NULL)
+            status = cp_fail_memory(error, path);
+    }
+    if (status == CP_OK)
+        status = copy_texts(&here, yaml->vehicles, yaml->vehicles_count, &suite->vehicles);
+    if (status == CP_OK)
+        status = read_classes(&file, yaml, suite, error);
+    cp_yaml_close(&file);
+    return status;
+}
+
+// ---- the end -----------------------------------------------------------------------------------
+
+static void destroy_texts(cp_suite_texts *texts)
+{
+    for (size_t k = 0; k < texts->count; k++)
+        free(texts->text[k]);
+    free(texts->text);
+}
+
+static void destroy_class(cp_suite_class *class)
+{
+    for (size_t c = 0; c < class->comparison_count; c++) {
+        cp_suite_comparison *comparison = &class->comparison[c];
+        free(comparison->times_ms.value);
+        free(comparison->reference.value);
+        free(comparison->low.value);
+        free(comparison->high.value);
+    }
+    free(class->comparison);
+    free(class->table_path);
+    free(class->speeds_km_h.value);
+    free(class->opponent_speeds_km_h.value);
+    free(class->overlaps_1.value);
+    free(class->sides_1.value);
+    free(class->angles_deg.value);
+    destroy_texts(&class->rows_with);
+    destroy_texts(&class->vehicles);
+    destroy_texts(&class->against);
+}
+
+void cp_suite_destroy(cp_suite *suite)
+{
+    for (size_t k = 0; k < suite->class_count; k++)
+        destroy_class(&suite->class[k]);
+    free(suite->class);
+    destroy_texts(&suite->vehicles);
+    free(suite->quantiles_path);
+    free(suite->path);
+    *suite = (cp_suite){0};
+}

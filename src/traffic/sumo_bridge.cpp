@@ -4,6 +4,7 @@
 #include "core/units.h"
 #include "traffic/road_network.h"
 #include "traffic/straight_run.h"
+#include "traffic/sumo_options.h"
 
 #include <libsumo/libsumo.h>
 
@@ -271,21 +272,11 @@ std::vector<std::string> command(const char *sumocfg, uint64_t seed, double step
     std::ostringstream step;
     step.precision(17);
     step << step_length_s;
-    const char *const ours[] = {"--gui-settings-file", // of sumo-gui, may be missing
-                                "",
-                                "--no-step-log",
-                                "true",
-                                "--duration-log.disable",
-                                "true",
-                                "--step-method.ballistic",
-                                "true",
-                                "--collision.action",
-                                "warn",
-                                "--collision.check-junctions",
-                                "true",
-                                "--collision.mingap-factor",
-                                "0"};
-    words.insert(words.end(), std::begin(ours), std::end(ours));
+    for (size_t k = 0; k < CP_SUMO_RULE_COUNT; k++) {
+        const cp_sumo_rule &rule = CP_SUMO_RULE[k];
+        if (rule.treatment == CP_SUMO_REPLACED)
+            words.insert(words.end(), {std::string("--") + rule.option, rule.value});
+    }
     words.insert(words.end(), {"--thread-rngs", std::to_string(streams), "--seed",
                                std::to_string(seed & INT32_MAX), "--step-length", step.str()});
     return words;

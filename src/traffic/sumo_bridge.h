@@ -84,10 +84,9 @@ typedef enum cp_road_relation {
 
 /* Start a simulation. options: option_count further SUMO command line words
  * ("--lateral-resolution", "0.8"), which override the configuration; the bridge appends
- * housekeeping (--no-step-log), the options every run of ours sets (ballistic update,
- * collision.action warn, junction checks, mingap-factor 0, thread-rngs: one random stream a lane,
- * at least 64) and seed and step length last; a word of those in options is refused by SUMO as
- * given twice. SUMO takes 31 bits of the seed, and its clock counts milliseconds: a step length of
+ * the options every run of ours sets (traffic/sumo_options.h), thread-rngs (one random stream a
+ * lane, at least 64), seed and step length; a word of those in options is refused by SUMO as given
+ * twice. SUMO takes 31 bits of the seed, and its clock counts milliseconds: a step length of
  * another kind is refused. begin/end times stay those of the configuration. Sets SUMO_HOME when it
  * is unset. SUMO's warnings go to stderr (but those of collisions and emergency braking, which are
  * what a run is for), its errors into error. */

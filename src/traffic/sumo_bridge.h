@@ -17,6 +17,7 @@
  *  - The header compiles as C and as C++. */
 
 #include "core/error.h"
+#include "traffic/lane_map.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -122,6 +123,13 @@ CP_MUST_CHECK cp_status sumo_bridge_collisions(const cp_sumo_collision **collisi
 CP_MUST_CHECK cp_status sumo_bridge_road_relation(const cp_vehicle_state *one,
                                                   const cp_vehicle_state *other,
                                                   cp_road_relation *relation, cp_error *error);
+
+/* Where the lanes run, by the numbers of lanes; owned by the bridge. Read like the above. */
+CP_MUST_CHECK cp_status sumo_bridge_lane_map(const cp_lane_map **map, cp_error *error);
+/* Numbers of the edges that a vehicle's route leads over next (those of the lane map), without the
+ * one it is on; the first room of them. */
+CP_MUST_CHECK cp_status sumo_bridge_next_edges(uint32_t vehicle, uint32_t *edges, size_t room,
+                                               size_t *count, cp_error *error);
 
 /* Width of a lane, m. */
 CP_MUST_CHECK cp_status sumo_bridge_lane_width(uint32_t lane, double *width_m, cp_error *error);

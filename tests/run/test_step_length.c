@@ -251,7 +251,13 @@ static void braked_crashes_are_the_same_to_0_3_m_s(void **state)
     (void)state;
     cp_control_settings aeb =
         cp_control_settings_default(cp_control_type_find(CP_CONTROL_FUNCTION, "aeb"));
-    assert_same_crash(&LEFT_TURN, "front-front", 0.05, &aeb, 0.3);
+    // On its route the left-turner sees the other coming before it turns: by default in time. With
+    // less foresight a crash remains.
+    cp_control_settings late = aeb;
+    for (size_t k = 0; k < late.type->parameter_count; k++)
+        if (strcmp(late.type->parameters[k].name, "ttc_s") == 0)
+            late.parameter[k] = 0.6;
+    assert_same_crash(&LEFT_TURN, "front-front", 0.05, &late, 0.3);
     assert_same_crash(&CROSSING, "front-side", 0.05, &aeb, 0.3);
     assert_same_crash(&REAR_END, "front-rear", 0.05, &aeb, 0.3);
     assert_same_crash(&DRIFT, "front-front", 0.05, &aeb, 0.3);

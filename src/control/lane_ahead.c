@@ -53,6 +53,7 @@ typedef struct layer {
     const cp_lane_map *map;
     cp_lane_ahead *ahead;
     bool is_reversed;
+    bool is_route; /* what follows is told to its end */
 } layer;
 
 // A corner of the centre line; its way is told later.
@@ -84,7 +85,7 @@ static void follow_lane(layer *on, const cp_lane *lane, uint32_t number, size_t 
     }
 }
 
-static void follow_lanes(layer *on, uint32_t number, size_t first, const uint32_t *next_edges,
+static void follow_lanes(layer *on, uint32_t number, size_t first, const uint32_t *next_lanes,
                          size_t next_count, double reach_m)
 {
     cp_lane_ahead *ahead = on->ahead;
@@ -93,15 +94,22 @@ static void follow_lanes(layer *on, uint32_t number, size_t first, const uint32_
         if (lane == NULL)
             return;
         follow_lane(on, lane, number, first, reach_m);
-        if (on->is_reversed || ahead->corner[ahead->count - 1].way_m > reach_m)
+        double way_m = ahead->corner[ahead->count - 1].way_m;
+        if (on->is_reversed || way_m > reach_m)
             return;
-        bool leaves_edge = !lane->is_inside;
-        number = cp_lane_map_next(on->map, number, next_count > 0 ? next_edges[0] : CP_LANE_NONE);
+        if (on->is_route && next_count == 0 && !lane->is_inside) {
+            ahead->ends_m = way_m;
+            return;
+        }
+        bool was_inside = lane->is_inside;
+        number = cp_lane_map_next(on->map, number, next_count > 0 ? next_lanes[0] : CP_LANE_NONE);
         const cp_lane *next = cp_lane_map_lane(on->map, number);
-        (void)leaves_edge;
-        // The edge that the route named is reached: the next one counts.
+        // Between two lanes inside one junction SUMO's drivers wait for those who go first.
+        if (was_inside && next != NULL && next->is_inside)
+            ahead->yields_m = fmin(ahead->yields_m, way_m);
+        // The lane that the route named is reached: the next one counts.
         if (next != NULL && !next->is_inside && next_count > 0) {
-            next_edges++;
+            next_lanes++;
             next_count--;
         }
         first = 0;
@@ -165,7 +173,7 @@ static void begin_behind(const cp_vehicle_motion *motion, cp_lane_ahead *ahead)
 }
 
 bool cp_lane_ahead_lay(const cp_lane_map *map, const cp_vehicle_motion *motion, double slope_1,
-                       const uint32_t *next_edges, size_t next_count, double reach_m,
+                       const uint32_t *next_lanes, size_t next_count, bool is_route, double reach_m,
                        cp_lane_ahead *ahead)
 {
     const cp_vehicle_state *now = &motion->after;
@@ -177,7 +185,7 @@ bool cp_lane_ahead_lay(const cp_lane_map *map, const cp_vehicle_motion *motion, 
     if (!(fabs(at.left_m) <= FAR_OFF_M))
         return false;
     begin_behind(motion, ahead);
-    layer on = {map, ahead, cp_vec2_dot(at.tangent, cp_vec2_heading(now->yaw_rad)) < 0.0};
+    layer on = {map, ahead, cp_vec2_dot(at.tangent, cp_vec2_heading(now->yaw_rad)) < 0.0, is_route};
     const cp_lane_point *from = &lane->point[at.piece], *to = from + 1;
     cp_vec2 foot_m =
         cp_vec2_add(flat(from), cp_vec2_scale(cp_vec2_sub(flat(to), flat(from)), at.share_1));
@@ -185,12 +193,13 @@ bool cp_lane_ahead_lay(const cp_lane_map *map, const cp_vehicle_motion *motion, 
         (cp_way_point){foot_m, 0.0, now->lane, from->at_m + at.share_1 * (to->at_m - from->at_m),
                        from->z_m + at.share_1 * (to->z_m - from->z_m)};
     ahead->is_inside = lane->is_inside;
+    ahead->ends_m = ahead->yields_m = INFINITY;
     ahead->lane_step_1 = on.is_reversed ? -1.0 : 1.0;
 
     // Beyond the end of its lane there is nothing more of it to follow.
     bool is_beyond = on.is_reversed ? at.share_1 < 0.0 : at.share_1 > 1.0;
     if (!is_beyond)
-        follow_lanes(&on, now->lane, on.is_reversed ? at.piece : at.piece + 1, next_edges,
+        follow_lanes(&on, now->lane, on.is_reversed ? at.piece : at.piece + 1, next_lanes,
                      next_count, reach_m);
     // At least one piece ahead, for the direction.
     if (ahead->count == ahead->front + 1) {

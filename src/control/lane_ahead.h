@@ -27,13 +27,16 @@ typedef struct cp_lane_ahead {
     size_t front;       /* the corner at which the front is now */
     double lane_step_1; /* of lane_at_m by a metre of way: 1, or -1 against the lane */
     bool is_inside;     /* the front is in a junction */
+    double ends_m; /* its route ends there, and SUMO takes it off the road; INFINITY: it does not */
+    double yields_m; /* where it waits inside a junction if it must give way; INFINITY: nowhere */
 } cp_lane_ahead;
 
-/* Lay out the way of a vehicle for reach_m before its front. next_edges: those of its route, count
- * of them; without, it goes straight on. False when its lane is not known or the vehicle is nowhere
- * near it (more than 8 m off). */
+/* Lay out the way of a vehicle for reach_m before its front. next_lanes: the lanes of edges on its
+ * route, next_count of them; without, it goes straight on. is_route: behind the last of them it
+ * goes nowhere. False when its lane is not known or the vehicle is nowhere near it (more than 8 m
+ * off). */
 bool cp_lane_ahead_lay(const cp_lane_map *map, const cp_vehicle_motion *motion, double slope_1,
-                       const uint32_t *next_edges, size_t next_count, double reach_m,
+                       const uint32_t *next_lanes, size_t next_count, bool is_route, double reach_m,
                        cp_lane_ahead *ahead);
 
 /* Where a vehicle of that length and width stands when its front has come way_m further (negative:

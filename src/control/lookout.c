@@ -6,6 +6,7 @@
 
 #define TURNING_RAD_S 0.1
 #define OTHERWISE_LATER_S 0.5 /* driving otherwise, they may meet this much later */
+#define EASY_BRAKING_M_S2 4.5 /* as SUMO's drivers brake by default */
 #define BISECTIONS 40
 
 static bool is_turning(const cp_moving_rectangle *moving)
@@ -219,6 +220,19 @@ static cp_mover accelerating(cp_mover mover, double acceleration_m_s2, double ti
     return mover;
 }
 
+// As if it came to rest where it has to wait in the junction, when it can do so at ease.
+static cp_mover waiting(cp_mover mover, double time_s)
+{
+    double speed_m_s = cp_vec2_length(mover.now.velocity_m_s);
+    if (mover.way == NULL || mover.way->yields_m == INFINITY)
+        return mover;
+    double rest_m = mover.way->yields_m - mover.begin_m;
+    double braking_m_s2 = speed_m_s * speed_m_s / (2.0 * rest_m);
+    return rest_m > 0.0 && braking_m_s2 < EASY_BRAKING_M_S2
+               ? accelerating(mover, -braking_m_s2, time_s)
+               : mover;
+}
+
 /* Two vehicles at one moment. */
 typedef struct encounter {
     cp_mover own;
@@ -288,6 +302,10 @@ static bool meet_otherwise(const encounter *pair, double later_s)
         return false;
     if (pair->class == CP_TARGET_REAR_END)
         return true;
+    cp_mover own_waits = waiting(*own, later_s), target_waits = waiting(*target, later_s);
+    if (cp_mover_ttc_s(&own_waits, target, later_s) == INFINITY ||
+        cp_mover_ttc_s(own, &target_waits, later_s) == INFINITY)
+        return false;
     cp_mover other = accelerating(*target, pair->target_m_s2, pair->ttc_s);
     return cp_mover_ttc_s(own, &other, later_s) < INFINITY;
 }

@@ -32,9 +32,11 @@
  *   6. of a target that does not head the same way: it holds too if the target goes on braking or
  *      gaining speed as it does. One that is about to stop beside the own way, or to be past it in
  *      time, is none;
- *   7. none of the two turns faster than 1 g of lateral acceleration allows, as cars of SUMO do in
+ *   7. neither of the two, heading apart, can still come to rest at ease where it has to wait in
+ * the junction for those who go first, and out of the other's way there;
+ *   8. none of the two turns faster than 1 g of lateral acceleration allows, as cars of SUMO do in
  *      tight corners and where lanes change: there its heading does not say where it goes;
- *   8. their roads meet where the contact would be (traffic.h): a bridge does not meet the road
+ *   9. their roads meet where the contact would be (traffic.h): a bridge does not meet the road
  *      below. */
 
 #define CP_LOOKOUT_TURN_HOLDS_S 1.5 /* assumed */

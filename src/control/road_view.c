@@ -15,7 +15,8 @@ typedef struct view_ways {
     bool is_known[2];
     uint32_t route_of; /* lane on which its route was asked */
     size_t next_count;
-    uint32_t next_edges[EDGES_AHEAD];
+    bool is_route; /* they are all there are */
+    uint32_t next_lanes[EDGES_AHEAD];
     cp_lane_ahead *way[2];
 } view_ways;
 
@@ -72,7 +73,9 @@ static cp_status ask_route(cp_road_view *view, const cp_vehicle_state *state, vi
     if (ways->route_of == state->lane + 1)
         return CP_OK;
     ways->route_of = state->lane + 1; // 0: of none
-    return cp_traffic_next_edges(view->traffic, state->vehicle, ways->next_edges, EDGES_AHEAD,
+    const cp_lane *lane = cp_lane_map_lane(view->map, state->lane);
+    ways->is_route = lane != NULL && !lane->is_inside;
+    return cp_traffic_next_lanes(view->traffic, state->vehicle, ways->next_lanes, EDGES_AHEAD,
                                  &ways->next_count, error);
 }
 
@@ -82,6 +85,7 @@ static cp_status lay(cp_road_view *view, const cp_vehicle_motion *motion, cp_way
     const cp_vehicle_state *state = &motion->after;
     double reach_m = fmax(REACH_S * state->speed_m_s, REACH_MIN_M);
     size_t next_count = 0;
+    bool is_route = false;
     cp_status status = CP_OK;
     if (ways->way[choice] == NULL)
         ways->way[choice] = malloc(sizeof *ways->way[choice]);
@@ -90,13 +94,14 @@ static cp_status lay(cp_road_view *view, const cp_vehicle_motion *motion, cp_way
     if (choice == CP_WAY_ROUTE) {
         status = ask_route(view, state, ways, error);
         next_count = ways->next_count;
+        is_route = ways->is_route && next_count < EDGES_AHEAD;
     }
     if (status != CP_OK)
         return status;
     double slope_1 =
         cp_lateral_overlay_get(cp_traffic_overlays(view->traffic), state->vehicle).slope_1;
-    ways->is_known[choice] = cp_lane_ahead_lay(view->map, motion, slope_1, ways->next_edges,
-                                               next_count, reach_m, ways->way[choice]);
+    ways->is_known[choice] = cp_lane_ahead_lay(view->map, motion, slope_1, ways->next_lanes,
+                                               next_count, is_route, reach_m, ways->way[choice]);
     ways->at_s[choice] = cp_traffic_time_s(view->traffic);
     return CP_OK;
 }
@@ -179,6 +184,15 @@ static double earliest_behind_s(const cp_mover *one, const cp_mover *other)
     return own_m_s > its_m_s ? gap_m / (own_m_s - its_m_s) : INFINITY;
 }
 
+// When SUMO takes it off the road.
+static double leaves_after_s(const cp_mover *mover)
+{
+    double speed_m_s = cp_vec2_length(mover->now.velocity_m_s);
+    if (mover->way == NULL || mover->way->ends_m == INFINITY || !(speed_m_s > 0.0))
+        return INFINITY;
+    return (mover->way->ends_m - mover->begin_m) / speed_m_s;
+}
+
 double cp_mover_ttc_s(const cp_mover *one, const cp_mover *other, double horizon_s)
 {
     const double contact_m = 1e-3;
@@ -187,6 +201,7 @@ double cp_mover_ttc_s(const cp_mover *one, const cp_mover *other, double horizon
     double bound_m_s = fastest_m_s(one) + fastest_m_s(other), time_s = 0.0;
     if (!(bound_m_s > 0.0) || earliest_behind_s(one, other) > horizon_s)
         return INFINITY;
+    horizon_s = fmin(horizon_s, fmin(leaves_after_s(one), leaves_after_s(other)));
     // Conservative advancement: the gap closes by no more than the bound.
     while (time_s <= horizon_s) {
         cp_rectangle there = cp_mover_at(one, time_s), other_there = cp_mover_at(other, time_s);

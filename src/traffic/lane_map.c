@@ -95,18 +95,20 @@ const cp_lane *cp_lane_map_lane(const cp_lane_map *map, uint32_t lane)
     return lane < map->count && map->lane[lane].point_count >= 2 ? &map->lane[lane] : NULL;
 }
 
-uint32_t cp_lane_map_next(const cp_lane_map *map, uint32_t number, uint32_t edge)
+uint32_t cp_lane_map_next(const cp_lane_map *map, uint32_t number, uint32_t towards)
 {
     const cp_lane *lane = cp_lane_map_lane(map, number);
+    const cp_lane *aim = cp_lane_map_lane(map, towards);
     if (lane == NULL || lane->link_count == 0)
         return CP_LANE_NONE;
     const cp_lane_link *taken = &lane->link[lane->straight];
-    for (size_t k = 0; edge != CP_LANE_NONE && !lane->is_inside && k < lane->link_count; k++) {
+    bool is_on_edge = false;
+    for (size_t k = 0; aim != NULL && !lane->is_inside && k < lane->link_count; k++) {
         const cp_lane *to = cp_lane_map_lane(map, lane->link[k].to);
-        if (to != NULL && to->edge == edge) {
-            taken = &lane->link[k];
-            break;
-        }
+        if (to == NULL || to->edge != aim->edge || (is_on_edge && lane->link[k].to != towards))
+            continue;
+        taken = &lane->link[k];
+        is_on_edge = true;
     }
     return taken->via != CP_LANE_NONE ? taken->via : taken->to;
 }

@@ -50,9 +50,9 @@ void cp_lane_map_destroy(cp_lane_map *map); /* NULL is fine */
 /* A lane; NULL for one there is not. */
 const cp_lane *cp_lane_map_lane(const cp_lane_map *map, uint32_t lane);
 
-/* The lane that follows: to an edge if a link leads there (CP_LANE_NONE: no matter where to), else
- * straight on; CP_LANE_NONE at the end of the road. */
-uint32_t cp_lane_map_next(const cp_lane_map *map, uint32_t lane, uint32_t edge);
+/* The lane that follows: towards another lane if a link leads there (CP_LANE_NONE: no matter where
+ * to), else to its edge, else straight on; CP_LANE_NONE at the end of the road. */
+uint32_t cp_lane_map_next(const cp_lane_map *map, uint32_t lane, uint32_t towards);
 
 #ifdef __cplusplus
 }

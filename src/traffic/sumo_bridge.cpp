@@ -677,15 +677,19 @@ cp_status sumo_bridge_lane_map(const cp_lane_map **map, cp_error *error)
     return status != CP_OK ? status : answer;
 }
 
-cp_status sumo_bridge_next_edges(uint32_t vehicle, uint32_t *edges, size_t room, size_t *count,
+cp_status sumo_bridge_next_lanes(uint32_t vehicle, uint32_t *lanes, size_t room, size_t *count,
                                  cp_error *error)
 {
     *count = 0;
     return command_vehicle("route", vehicle, error, [=](const std::string &id) {
-        const std::vector<std::string> route = libsumo::Vehicle::getRoute(id);
-        const int here = libsumo::Vehicle::getRouteIndex(id);
-        for (size_t k = static_cast<size_t>(here + 1); k < route.size() && *count < room; k++)
-            edges[(*count)++] = bridge->edges.number(route[k]);
+        const std::string here = libsumo::Vehicle::getLaneID(id);
+        for (const auto &choice : libsumo::Vehicle::getBestLanes(id)) {
+            if (choice.laneID != here)
+                continue;
+            for (const std::string &lane : choice.continuationLanes)
+                if (lane != here && *count < room)
+                    lanes[(*count)++] = bridge->lanes.number(lane);
+        }
     });
 }
 

@@ -383,12 +383,12 @@ cp_status cp_traffic_lane_map(const cp_traffic *traffic, const cp_lane_map **map
     return traffic->source->lane_map ? traffic->source->lane_map(map, error) : CP_OK;
 }
 
-cp_status cp_traffic_next_edges(const cp_traffic *traffic, uint32_t vehicle, uint32_t *edges,
+cp_status cp_traffic_next_lanes(const cp_traffic *traffic, uint32_t vehicle, uint32_t *lanes,
                                 size_t room, size_t *count, cp_error *error)
 {
     *count = 0;
-    return traffic->source->next_edges
-               ? traffic->source->next_edges(vehicle, edges, room, count, error)
+    return traffic->source->next_lanes
+               ? traffic->source->next_lanes(vehicle, lanes, room, count, error)
                : CP_OK;
 }
 

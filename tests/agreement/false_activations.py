@@ -21,7 +21,7 @@ parser.add_argument("networks", nargs="*")
 parser.add_argument("--output")
 parser.add_argument("--seconds", type=int, default=400)
 parser.add_argument("--bar", action="store_true")
-arguments = parser.parse_args()
+arguments = parser.parse_intermixed_args()
 crashpulse = pathlib.Path(arguments.crashpulse).resolve()
 source = pathlib.Path(__file__).resolve().parents[2]
 shared = source.parent / "shared"

@@ -93,7 +93,7 @@ static const cp_traffic_source TWO_CARS_SOURCE = {
     .place = sumo_bridge_place,
     .lane_width = sumo_bridge_lane_width,
     .lane_map = sumo_bridge_lane_map,
-    .next_edges = sumo_bridge_next_edges,
+    .next_lanes = sumo_bridge_next_lanes,
     .stop = sumo_bridge_stop,
 };
 

@@ -176,6 +176,24 @@ static cp_contact_verdict filter_motion(const cp_detector_scene *scene,
     return is_clipped_waiting(scene, impact) ? CP_CONTACT_CLIPPED_WAITING : CP_CONTACT_CONFIRMED;
 }
 
+// How their roads lie where they touched: at the end of a long step they may have passed each other
+// by far. What each drove between is taken off its place; of one that drives against its lane, as
+// overtakers do, added to it.
+static cp_status relate_at_contact(const cp_detector_scene *scene, const cp_vehicle_state end[2],
+                                   const double way_m[2], cp_road_relation *relation,
+                                   cp_error *error)
+{
+    cp_status status = CP_OK;
+    *relation = CP_ROADS_APART;
+    for (int k = 0; status == CP_OK && *relation == CP_ROADS_APART && k < 4; k++) {
+        cp_vehicle_state at[2] = {end[0], end[1]};
+        at[0].lane_position_m += k & 1 ? way_m[0] : -way_m[0];
+        at[1].lane_position_m += k & 2 ? way_m[1] : -way_m[1];
+        status = scene->road_relation(scene->road_context, &at[0], &at[1], relation, error);
+    }
+    return status;
+}
+
 // Verdict on an impact that is a crash or a graze by the motion of its rectangles alone.
 static cp_status judge(const cp_detector_scene *scene, const cp_vehicle_motion *const motion[2],
                        cp_impact *impact, cp_error *error)
@@ -183,7 +201,9 @@ static cp_status judge(const cp_detector_scene *scene, const cp_vehicle_motion *
     cp_road_relation relation = CP_ROADS_MEET;
     cp_status status = CP_OK;
 
-    // Where on the road they are: at the end of the step.
+    // Where on the road they are at the end of the step, and how much of it they drove after.
+    cp_vehicle_state ends[2];
+    double way_m[2];
     for (int role = 0; status == CP_OK && role < 2; role++) {
         const cp_vehicle_motion *own = motion[motion[0]->after.vehicle != impact->vehicle[role]];
         cp_vehicle_state end = own->after;
@@ -192,10 +212,12 @@ static cp_status judge(const cp_detector_scene *scene, const cp_vehicle_motion *
         impact->state[role].lane = end.lane;
         impact->state[role].lane_position_m = end.lane_position_m;
         impact->state[role].is_in_junction = end.is_in_junction;
+        ends[role] = impact->state[role];
+        way_m[role] = hypot(end.front_x_m - impact->state[role].front_x_m,
+                            end.front_y_m - impact->state[role].front_y_m);
     }
     if (status == CP_OK && scene->road_relation != NULL)
-        status = scene->road_relation(scene->road_context, &impact->state[0], &impact->state[1],
-                                      &relation, error);
+        status = relate_at_contact(scene, ends, way_m, &relation, error);
     if (relation == CP_ROADS_APART)
         impact->verdict = CP_CONTACT_ROADS_APART;
     else if (relation == CP_ROADS_OTHER_LEVEL)

@@ -484,11 +484,14 @@ cp_status relate(const cp_vehicle_state *one, const cp_vehicle_state *other,
                  cp_road_relation *relation, cp_error *error)
 {
     const double level_m = 2.5; // less than a bridge is high, more than a ramp climbs over a truck
-    const double margin_m = 10.0; // movement in a step, stop lines set back
+    const double margin_m = 10.0; // stop lines set back, corners cut
     cp_status status = need_roads(error);
     if (status != CP_OK)
         return status;
-    const double reach_m = std::max(one->length_m, other->length_m) + margin_m;
+    // A place before the beginning of a lane lies on one before it, as far away at most.
+    const double before_m =
+        std::max(0.0, -one->lane_position_m) + std::max(0.0, -other->lane_position_m);
+    const double reach_m = std::max(one->length_m, other->length_m) + margin_m + before_m;
     const double distance_m = cp_road_distance_m(bridge->roads, {one->lane, one->lane_position_m},
                                                  {other->lane, other->lane_position_m}, reach_m);
     if (!(distance_m <= reach_m))

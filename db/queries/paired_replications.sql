@@ -2,7 +2,9 @@
 -- Seed by seed: frontal crashes of every treatment, and the mean OLC of their frontally struck
 -- vehicles, beside the baseline's in the replication with the same scenario and number. In the paired
 -- design both ran the same demand and seed. Without a vehicle with an OLC the mean is NULL.
-WITH severity AS (
+WITH counted AS MATERIALIZED ( -- once, with an index of its own for the join below
+    SELECT * FROM replication_crashes
+), severity AS MATERIALIZED (
     SELECT replication_id, avg(olc_g) AS mean_olc_g
     FROM frontal_vehicle
     GROUP BY replication_id
@@ -11,9 +13,9 @@ SELECT b.scenario, b.replication, b.seed, t.variant AS treatment,
        b.frontal_crashes AS baseline_crashes, t.frontal_crashes AS treatment_crashes,
        t.frontal_crashes - b.frontal_crashes AS difference,
        round(bs.mean_olc_g, 1) AS baseline_mean_olc_g, round(ts.mean_olc_g, 1) AS treatment_mean_olc_g
-FROM replication_crashes AS b
+FROM counted AS b
 JOIN variant AS v ON v.id = b.variant_id AND v.is_baseline = 1
-JOIN replication_crashes AS t ON t.scenario_id = b.scenario_id AND t.replication = b.replication
+JOIN counted AS t ON t.scenario_id = b.scenario_id AND t.replication = b.replication
                              AND t.variant_id <> b.variant_id
 LEFT JOIN severity AS bs ON bs.replication_id = b.replication_id
 LEFT JOIN severity AS ts ON ts.replication_id = t.replication_id

@@ -84,15 +84,23 @@ typedef struct row {
     cp_interval interval;
 } row;
 
+static bool closed(const row *r)
+{
+    return r->interval.status == CP_INTERVAL_VALUE && isfinite(r->interval.low) &&
+           isfinite(r->interval.high);
+}
+
 static void put_row(plot *p, const row *r)
 {
     if (isnan(r->value))
         return;
-    bool closed = r->interval.status == CP_INTERVAL_VALUE && isfinite(r->interval.low) &&
-                  isfinite(r->interval.high);
+    // No bar where there is no interval: none of no width is drawn.
     begin_block(p, "row", p->drawn);
-    fprintf(p->out, "%.9g %zu %.9g %.9g\n", r->value, p->drawn, closed ? r->interval.low : r->value,
-            closed ? r->interval.high : r->value);
+    if (closed(r))
+        fprintf(p->out, "%.9g %zu %.9g %.9g\n", r->value, p->drawn, r->interval.low,
+                r->interval.high);
+    else
+        fprintf(p->out, "%.9g %zu\n", r->value, p->drawn);
     end_block(p);
     p->drawn++;
 }
@@ -122,8 +130,9 @@ static void end_rows(plot *p, const row *rows, size_t count, const char *axis, b
     for (size_t k = 0; k < count; k++) {
         if (isnan(rows[k].value))
             continue;
-        fprintf(p->out, "%s$row%zu using 1:2:3:4 with xerrorbars lw 2 pt %d ps 1 lc rgb \"%s\"",
-                place ? ", \\\n  " : "", place, point(rows[k].variant), colour(rows[k].variant));
+        fprintf(p->out, "%s$row%zu using %s lw 2 pt %d ps 1 lc rgb \"%s\"", place ? ", \\\n  " : "",
+                place, closed(&rows[k]) ? "1:2:3:4 with xerrorbars" : "1:2 with points",
+                point(rows[k].variant), colour(rows[k].variant));
         place++;
     }
     fputc('\n', p->out);
@@ -145,12 +154,18 @@ static cp_status plot_rates(plot *p, cp_error *error)
     for (size_t k = 0; k < c->variant_count; k++) {
         const cp_variant_figures *v = &c->variant[k];
         bool bootstrap = v->rate_bootstrap.status == CP_INTERVAL_VALUE;
-        rows[k] = (row){v->variant, bootstrap ? "" : "Poisson", v->rate,
-                        bootstrap ? v->rate_bootstrap : v->rate_garwood};
+        rows[k] =
+            (row){v->variant, bootstrap ? "" : "Poisson, widened", v->rate, cp_rate_interval(v)};
     }
     write_rows(p, rows, c->variant_count, "frontal crashes per 10^6 vehicle-km", false);
     free(rows);
     return CP_OK;
+}
+
+// A difference that censoring leaves open has no place on an axis.
+static double known(cp_estimate estimate)
+{
+    return estimate.relation == CP_EXACTLY ? estimate.value : NAN;
 }
 
 static cp_status plot_difference(plot *p, cp_error *error)
@@ -161,11 +176,11 @@ static cp_status plot_difference(plot *p, cp_error *error)
         return cp_fail_memory(error, "a figure");
     size_t count = 0;
     for (size_t k = 0; k < c->contrast_count; k++) {
-        const cp_contrast *o = &c->contrast[k].severity[CP_QUANTITY_OLC][p->scope];
+        const cp_contrast *o = &c->contrast[k].severity[CP_QUANTITY_OLC];
         size_t v = c->contrast[k].variant;
-        rows[count++] = (row){v, "median", o->median_difference.value, o->median_interval};
-        rows[count++] = (row){v, "mean", o->mean_difference.value, o->mean_interval};
-        rows[count++] = (row){v, "90 % quantile", o->p90_difference.value, o->p90_interval};
+        rows[count++] = (row){v, "median", known(o->median_difference), o->median_interval};
+        rows[count++] = (row){v, "mean", known(o->mean_difference), o->mean_interval};
+        rows[count++] = (row){v, "90 % quantile", known(o->p90_difference), o->p90_interval};
     }
     for (size_t k = 0; k < c->counterfactual_count; k++) {
         const cp_counterfactual_figures *f = &c->counterfactual[k];
@@ -195,8 +210,7 @@ static cp_status plot_benefit(plot *p, cp_error *error)
         bool pairs = k >= c->contrast_count;
         const cp_counterfactual_figures *f = &c->counterfactual[pairs ? k - c->contrast_count : 0];
         for (size_t r = 0; r < risks; r++, count++) {
-            const cp_benefit_figures *b =
-                pairs ? &f->benefit[r] : &c->contrast[k].benefit[p->scope][r];
+            const cp_benefit_figures *b = pairs ? &f->benefit[r] : &c->contrast[k].benefit[r];
             const cp_study_risk *risk = &p->data->risk[r];
             snprintf(label[count], sizeof label[count], "%.50s (%.50s)", risk->level, risk->name);
             rows[count] =
@@ -274,6 +288,43 @@ static cp_status plot_olc(plot *p, cp_error *error)
         fprintf(p->out, " (n = %zu)\"%s",
                 c->variant[k].description[CP_QUANTITY_OLC][p->scope].count,
                 k + 1 < c->variant_count ? ", \\\n  " : "\n");
+    }
+    return CP_OK;
+}
+
+// Crashes above a severity per vehicle-km over that severity, with the band of single points.
+static cp_status plot_exceedance(plot *p, int what, cp_error *error)
+{
+    (void)error;
+    const cp_comparison *c = p->comparison;
+    double factor = what == CP_EXCEEDED_DELTA_V ? 3.6 : 1.0;
+    for (size_t k = 0; k < c->variant_count; k++) {
+        begin_block(p, "above", k);
+        for (size_t j = 0; j < CP_EXCEEDANCE_POINTS; j++) {
+            const cp_exceedance *e = &c->variant[k].curve[what][j];
+            if (isnan(e->rate)) {
+                fputs("0 NaN NaN NaN\n", p->out);
+                break;
+            }
+            fprintf(p->out, "%.6g %.6g %.6g %.6g\n", factor * e->x, e->rate, e->interval.low,
+                    e->interval.high);
+            p->drawn += e->crashes;
+        }
+        end_block(p);
+    }
+    fprintf(p->out,
+            "set xlabel \"%s\"\nset ylabel \"frontal crashes above it per 10^6 vehicle-km\"\n"
+            "set xrange [0:*]\nset yrange [0:*]\nset key top right\nset grid lc rgb "
+            "\"#d9dde2\"\nplot ",
+            what == CP_EXCEEDED_DELTA_V ? "delta-v, km/h" : "OLC, g");
+    for (size_t k = 0; k < c->variant_count; k++) {
+        size_t v = c->variant[k].variant;
+        fprintf(p->out,
+                "$above%zu using 1:3:4 with filledcurves fs transparent solid 0.15 noborder lc rgb "
+                "\"%s\" notitle, \\\n  $above%zu using 1:2 with lines lw 2 lc rgb \"%s\" title \"",
+                k, colour(v), k, colour(v));
+        put_text(p->out, name_of(p, v));
+        fprintf(p->out, ", 95 %% at each point\"%s", k + 1 < c->variant_count ? ", \\\n  " : "\n");
     }
     return CP_OK;
 }
@@ -465,6 +516,10 @@ static cp_status write_script(plot *p, cp_plot_kind kind, cp_error *error)
         return plot_benefit(p, error);
     case CP_PLOT_CORRIDOR:
         return plot_corridor(p, error);
+    case CP_PLOT_ABOVE_OLC:
+        return plot_exceedance(p, CP_EXCEEDED_OLC, error);
+    case CP_PLOT_ABOVE_DELTA_V:
+        return plot_exceedance(p, CP_EXCEEDED_DELTA_V, error);
     case CP_PLOT_KIND_COUNT:
         break;
     }

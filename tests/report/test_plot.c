@@ -87,8 +87,8 @@ static void script_holds_the_figures(void **state)
                      CP_OK);
     for (size_t k = 0; k < 2; k++) {
         const cp_variant_figures *v = &f->comparison.variant[k];
-        snprintf(wanted, sizeof wanted, "%.9g %zu %.9g %.9g\n", v->rate, k, v->rate_garwood.low,
-                 v->rate_garwood.high);
+        snprintf(wanted, sizeof wanted, "%.9g %zu %.9g %.9g\n", v->rate, k, v->rate_widened.low,
+                 v->rate_widened.high);
         assert_non_null(strstr(script, wanted));
     }
     free(script);

@@ -53,13 +53,13 @@ static void repetition(const simulated_design *d, uint64_t seed, size_t resample
     cp_interval ratio;
     cp_exposure ea = simulated_exposure(&a), eb = simulated_exposure(&b);
     cp_error error = {0};
-    if (cp_contrast_samples(&a.sample, &b.sample, &r, 0, &c, &error) != CP_OK ||
+    if (cp_contrast_samples(&a.sample, &b.sample, &r, &c, &error) != CP_OK ||
         cp_rate_ratio_bootstrap(&ea, &eb, &r, &ratio, &error) != CP_OK)
         abort();
     covered[MEAN] += holds(c.mean_interval, truth.mean_difference);
     covered[MEDIAN] += holds(c.median_interval, truth.median_difference);
     covered[P90] += holds(c.p90_interval, truth.p90_difference);
-    covered[DELTA] += holds(c.cliffs_delta_interval, truth.cliffs_delta);
+    covered[DELTA] += holds(c.superiority.interval, truth.cliffs_delta);
     covered[RATIO] += holds(ratio, truth.rate_ratio);
     covered[BAND] += expanded && band_holds(&a.sample, &r);
     simulated_variant_destroy(&a);

@@ -147,7 +147,12 @@ cp_status cp_contrast_rates(const cp_exposure *a, const cp_exposure *b,
     if (status != CP_OK)
         return status;
     test->statistic = log_ratio(a, b, permutation.label);
-    if (!isnan(test->statistic) && permutations > 0) {
+    double events = 0.0;
+    for (size_t k = 0; k < a->cluster_count; k++)
+        events += a->events[k];
+    for (size_t k = 0; k < b->cluster_count; k++)
+        events += b->events[k];
+    if (!isnan(test->statistic) && permutations > 0 && events >= CP_CONTRAST_EVENTS_MIN) {
         double valid = 0.0, extreme = 0.0;
         for (size_t number = 1; number <= permutations; number++) {
             cp_permutation_set(&permutation, number);

@@ -98,7 +98,8 @@ SELECT v.name AS variant, v.id AS variant_id, v.is_baseline AS is_baseline,
                       AND o.olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s'))
               WHERE place >= (k.n + 1) / 2 LIMIT 2)
         WHERE place <= k.n / 2 + 1) AS olc_median_g,
-       k.mean_g AS olc_mean_g, -- of the vehicles with a value only
+       -- NULL with left-censored vehicles: without them it would rise as crashes get milder
+       CASE WHEN k.censored = 0 THEN k.mean_g END AS olc_mean_g,
        (SELECT min(o.olc_g) FROM crash_vehicle AS o
         WHERE o.variant_id = v.id
           AND o.olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')) AS olc_min_g,

@@ -390,7 +390,7 @@
   const pairedFigure = !data.pairs ? null : figure("figure-paired", "OLC without and with the treatment, pair by pair",
     () => (data.pairs.crash
       ? "A point is a frontal crash of the baseline: across its OLC, up what it became with the treatment, 0 when avoided; the larger of its frontally struck vehicles."
-      : `A point is a seed run with both: mean OLC over ${scopeText()}. Of ${integer(seedsRun())} seeds, those with such a vehicle in both runs; traffic differs after the first intervention, so a pair is of seeds, not of crashes.`) +
+      : `A point is a seed run with both: mean OLC over ${scopeText()}, left-censored ones as 0 g. Of ${integer(seedsRun())} seeds, those with such a vehicle in both runs; traffic differs after the first intervention, so a pair is of seeds, not of crashes.`) +
       " Below the line: less severe." + (data.pairs.crash ? thinned() : ""),
     function (svg, width) {
       const points = pairs(), top = legend(svg, width, [...new Set(points.map(p => p.variant))].sort(d3.ascending).map(v => ({ variant: v, label: `${data.variants[v].name} (n = ${points.filter(p => p.variant === v).length}, ${points.filter(p => p.variant === v && p.treated < p.baseline).length} lower)` })), pointMark);

@@ -1,12 +1,14 @@
 -- SPDX-License-Identifier: GPL-3.0-or-later
 -- Seed by seed: frontal crashes of every treatment, and the mean OLC of their frontally struck
 -- vehicles, beside the baseline's in the replication with the same scenario and number. In the paired
--- design both ran the same demand and seed. Without a vehicle with an OLC the mean is NULL.
+-- design both ran the same demand and seed. A left-censored vehicle counts as 0 g, below which none
+-- is; without a simulated vehicle the mean is NULL.
 WITH counted AS MATERIALIZED ( -- once, with an index of its own for the join below
     SELECT * FROM replication_crashes
 ), severity AS MATERIALIZED (
-    SELECT replication_id, avg(olc_g) AS mean_olc_g
+    SELECT replication_id, avg(CASE WHEN censored THEN 0.0 ELSE olc_g END) AS mean_olc_g
     FROM frontal_vehicle
+    WHERE olc_status <> 'simulation_failed'
     GROUP BY replication_id
 )
 SELECT b.scenario, b.replication, b.seed, t.variant AS treatment,

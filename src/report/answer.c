@@ -33,7 +33,7 @@ static const char *p_phrase(double p, char text[CP_ESTIMATE_TEXT_SIZE])
 {
     char number[CP_ESTIMATE_TEXT_SIZE];
     cp_p_text(p, number);
-    snprintf(text, CP_ESTIMATE_TEXT_SIZE, number[0] == '<' ? "p < %.20s" : "p = %.20s",
+    snprintf(text, CP_ESTIMATE_TEXT_SIZE, number[0] == '<' ? "Holm p < %.20s" : "Holm p = %.20s",
              number + (number[0] == '<'));
     return text;
 }
@@ -307,8 +307,8 @@ cp_status cp_comparison_answer(const cp_study_data *data, const cp_comparison *c
     fputs("In all: ", out);
     write_counts(out, data, comparison);
     if (data->unfinished > 0)
-        fprintf(out, "; %zu planned replication%s failed or not finished, and not in these figures",
-                data->unfinished, data->unfinished == 1 ? " is" : "s are");
+        fprintf(out, "; not counted: %zu planned replication%s that failed or did not finish",
+                data->unfinished, data->unfinished == 1 ? "" : "s");
     fputs(". All conditional on the assumed driver errors (", out);
     write_driver_errors(out, data, comparison->slice);
     fputs("): these are not accident rates of real traffic.", out);

@@ -56,6 +56,18 @@ JOIN replication AS r ON r.id = c.replication_id
 JOIN scenario AS s ON s.id = cv.scenario_id
 JOIN variant AS v ON v.id = cv.variant_id;
 
+-- Why a vehicle's severity lies outside the validated range: one row a reason, none for a vehicle that
+-- lies inside (its validity is the list of them, or 'inside').
+DROP VIEW IF EXISTS validity_reason;
+CREATE VIEW validity_reason AS
+SELECT s.name AS scenario, v.name AS variant, cv.crash_id, cv.role, cv.frontal, cv.crash_type,
+       r.value AS reason
+FROM crash_vehicle AS cv
+JOIN scenario AS s ON s.id = cv.scenario_id
+JOIN variant AS v ON v.id = cv.variant_id
+JOIN json_each('["' || replace(cv.validity, ',', '","') || '"]') AS r
+WHERE cv.validity <> 'inside';
+
 -- OLC over the frontally struck vehicles of each variant. The median counts left-censored vehicles
 -- below every value; NULL when it falls among them (then it is below the smallest value) or when
 -- there is no vehicle. share_inside_validity: of the frontal vehicles.

@@ -38,12 +38,13 @@ typedef struct severities {
     crash_severity *crash;
 } severities;
 
-static crash_severity severity_of(const cp_study_data *data, size_t crash, cp_exceeded what)
+static crash_severity severity_of(const cp_study_data *data, cp_slice slice, size_t crash,
+                                  cp_exceeded what)
 {
     crash_severity s = {SIZE_MAX, -INFINITY, -INFINITY, false};
     for (size_t k = 2 * crash; k < 2 * crash + 2; k++) {
         const cp_study_vehicle *v = &data->vehicle[k];
-        if (!v->frontal)
+        if (!v->frontal || (slice.chosen && !slice.chosen[k]))
             continue;
         double value = what == CP_EXCEEDED_DELTA_V ? v->delta_v_m_s : v->olc_g;
         bool failed = v->olc == CP_OLC_FAILED || (what == CP_EXCEEDED_DELTA_V && isnan(value));
@@ -67,7 +68,7 @@ static void gather(const cp_study_data *data, const cp_replication_set *set, cp_
         size_t cluster = cp_replication_set_cluster(set, data->crash[k].replication);
         if (cluster == SIZE_MAX || !cp_slice_has_frontal_crash(data, slice, &data->crash[k]))
             continue;
-        list->crash[list->count] = severity_of(data, k, what);
+        list->crash[list->count] = severity_of(data, slice, k, what);
         list->crash[list->count++].cluster = cluster;
     }
 }

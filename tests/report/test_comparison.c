@@ -246,20 +246,30 @@ static void groups_agree_with_sql(void **state)
     fixture *f = *state;
     cp_error error = {0};
     cp_grouping g;
-    cp_comparison_options options = {.repetitions = 10, .permutations = 0};
+    cp_comparison_options options = {.repetitions = 10, .permutations = 0, .above = {10.0, 5.0}};
     const char *where = "closing_speed_m_s > 12 AND validity <> 'angle' -- a comment";
     assert_int_equal(
         cp_grouping_create(f->store, &f->data, "left_turn", "validity", where, &g, &error), CP_OK);
     assert_true(g.count >= 2);
-    size_t vehicles = 0;
+    size_t vehicles = 0, above = 0;
     double wanted = 0.0;
     for (size_t k = 0; k < g.count; k++) {
         cp_comparison part;
         assert_int_equal(cp_compare(&f->data, 0, g.slice[k], &options, &part, &error), CP_OK);
         vehicles += part.variant[0].frontal_vehicles;
+        above += part.variant[0].above[CP_EXCEEDED_OLC].crashes;
         assert_int_equal(part.variant[0].replications, 8);
         cp_comparison_destroy(&part);
     }
+    // Crashes above the headline severity by the chosen vehicles of each group.
+    if (cp_query_number(f->store,
+                        "SELECT count(*) FROM (SELECT DISTINCT crash_id, validity FROM "
+                        "frontal_vehicle WHERE closing_speed_m_s > 12 AND validity <> 'angle' AND "
+                        "variant = 'baseline' AND scenario = 'left_turn' AND olc_g > 10)",
+                        &wanted, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(above, (size_t)wanted);
+    assert_true(wanted > 0.0);
     if (cp_query_number(f->store,
                         "SELECT count(*) FROM frontal_vehicle WHERE closing_speed_m_s > 12 AND"
                         " validity <> 'angle' AND variant = 'baseline' AND scenario = 'left_turn'",

@@ -281,6 +281,17 @@ static void crashes_above_a_severity_are_counted_once(void **state)
     assert_int_equal(curve[17].least, 0);
     assert_int_equal(curve[18].crashes, 0);
     cp_comparison_destroy(&c);
+
+    // Of the vehicles that are chosen: without the one with 18 g no crash is above 17.
+    unsigned char chosen[6] = {1, 0, 1, 1, 1, 1};
+    cp_error error = {0};
+    cp_comparison_options options = cp_comparison_options_default();
+    assert_int_equal(cp_compare(&s->data, 0, (cp_slice){CP_SLICE_ALL, CP_SLICE_ALL, chosen},
+                                &options, &c, &error),
+                     CP_OK);
+    assert_int_equal(c.variant[0].curve[CP_EXCEEDED_OLC][17].crashes, 0);
+    assert_int_equal(c.variant[0].curve[CP_EXCEEDED_OLC][15].crashes, 1);
+    cp_comparison_destroy(&c);
     invented_destroy(s);
 }
 

@@ -312,7 +312,7 @@
   }
 
   const differenceFigure = figure("figure-difference", "Change of OLC against the baseline",
-    () => (slice().counterfactual.length ? "Hodges–Lehmann estimate of the change within pairs" : "Treatment minus baseline, both at the same mix of scenarios") + `, over all frontally struck vehicles, with 95 % bootstrap intervals over replications; without one, the reason stands beside the value. Means of left-censored vehicles are not known and not drawn. Left of zero: less severe.`,
+    () => (slice().counterfactual.length ? "Hodges–Lehmann estimate of the change within pairs, of the larger OLC of a crash’s frontally struck vehicles" : "Treatment minus baseline, both at the same mix of scenarios, over all frontally struck vehicles") + `, with 95 % bootstrap intervals over replications; without one, the reason stands beside the value. Means of left-censored vehicles are not known and not drawn. Left of zero: less severe.`,
     function (svg, width) {
       const rows = differences(), margin = { top: 10, right: 16, bottom: 48, left: 16 }, band = 46, h = band * rows.length, w = width - margin.left - margin.right;
       const reach = d3.max(rows, r => d3.max([r.value, r.low, r.high].filter(v => !missing(v)).map(Math.abs))) || 1;

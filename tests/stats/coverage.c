@@ -89,8 +89,8 @@ static void print_cell(const simulated_design *d, size_t repetitions, size_t res
 
 int main(int argc, char **argv)
 {
-    size_t repetitions = argc > 1 ? strtoul(argv[1], NULL, 10) : 2000;
-    size_t resamples = argc > 2 ? strtoul(argv[2], NULL, 10) : 2000;
+    size_t repetitions = argc > 1 ? strtoul(argv[1], NULL, 10) : 1000;
+    size_t resamples = argc > 2 ? strtoul(argv[2], NULL, 10) : 1000;
     printf("Per cent of %zu simulated studies whose 95 %% interval holds the truth, %zu resamples "
            "each.\nBold: outside 93–97. Standard error of an entry: %.1f.\n\n",
            repetitions, resamples, 100.0 * sqrt(0.95 * 0.05 / (double)repetitions));

@@ -752,7 +752,7 @@
     shownContrasts().forEach(c => {
       const o = c.olc_g, speed = c.closing_speed_m_s, dv = c.delta_v_m_s, km_h = n => fixed(3.6 * n, 1);
       const add = (what, value, i, bound, p, holm) => rows.push([c.variant, what, value, i, bound, p, holm]);
-      const test = q => q.superiority.status === "value" ? pValue(q.superiority.p) : q.superiority.status;
+      const test = q => missing(q.superiority.p) ? q.superiority.status : (q.superiority.status === "value" ? "" : "≤ ") + pValue(q.superiority.p);
       const change = e => missing(e) ? "–" : (e.relation === "=" ? "" : `${e.relation} `) + km_h(e.value);
       add("rate ratio of frontal crashes", fixed(c.rate_ratio, 2), interval(c.rate_ratio_interval, two), "", pValue(c.rate_p), pValue(c.rate_p_holm));
       [["olc", 1, "g OLC"], ["delta_v", 3.6, "km/h delta-v"]].forEach(([key, factor, unit]) => {

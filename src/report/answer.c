@@ -137,6 +137,10 @@ static void write_severity(FILE *out, const cp_study_data *data, const cp_compar
         char p[CP_ESTIMATE_TEXT_SIZE];
         write_interval(out, s->interval, 2, "interval");
         fprintf(out, ", %s", p_phrase(c->severity_p_holm[CP_QUANTITY_OLC], p));
+    } else if (!isnan(s->p)) {
+        char p[CP_ESTIMATE_TEXT_SIZE];
+        fprintf(out, "completely apart, which leaves no interval, %s at most",
+                p_phrase(c->severity_p_holm[CP_QUANTITY_OLC], p));
     } else {
         fprintf(out, "%s for an interval or a test", cp_interval_status_text(s->status));
     }

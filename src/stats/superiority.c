@@ -222,6 +222,29 @@ static double effective_freedom(const work *w, int group)
     return fmax(freedom, 1.0);
 }
 
+static double clusters_there(const work *w, int group, size_t stratum)
+{
+    double there = 0.0;
+    for (size_t c = 0; c < w->sample[group]->cluster_count; c++)
+        there += stratum_of(w, group, c) == stratum && w->cluster[group][c].size > 0.0;
+    return there;
+}
+
+// How likely complete separation is at most, without any difference.
+static double separation_bound(const work *w)
+{
+    double log_p = log(2.0);
+    for (size_t s = 0; s < w->strata && !w->paired; s++) {
+        double a = clusters_there(w, 0, s), b = clusters_there(w, 1, s);
+        if (a > 0.0 && b > 0.0)
+            log_p -= lgamma(a + b + 1.0) - lgamma(a + 1.0) - lgamma(b + 1.0);
+    }
+    for (size_t c = 0; w->paired && c < w->sample[0]->cluster_count; c++)
+        if (w->cluster[0][c].size > 0.0 && w->cluster[1][c].size > 0.0)
+            log_p -= log(2.0);
+    return fmin(1.0, exp(log_p));
+}
+
 // Standard error and degrees of freedom; then test and interval.
 static void infer(work *w, cp_superiority *result)
 {
@@ -243,6 +266,8 @@ static void infer(work *w, cp_superiority *result)
         result->freedom = fmin(result->freedom, fmin(freedom[0], freedom[1]));
     if (!(variance > 1e-24) || !isfinite(result->freedom)) {
         result->status = result->interval.status = CP_INTERVAL_ALL_ALIKE;
+        if (fabs(result->cliffs_delta) > 1.0 - 1e-12)
+            result->p = separation_bound(w);
         return;
     }
     double delta = result->cliffs_delta, se = result->standard_error;

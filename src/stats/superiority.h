@@ -13,7 +13,13 @@
  * of freedom are Satterthwaite's over the two samples, each with Kish's effective number of
  * clusters (sum m)^2 / sum m^2 of m observations minus 1 for every stratum; of paired samples the
  * smaller of the two. Unlike the permutation of whole replications this needs no alike numbers of
- * observations in the two samples. Size and coverage: tests/stats/null_study.md. */
+ * observations in the two samples. Size and coverage: tests/stats/null_study.md.
+ *
+ * Where every observation of one sample lies above all of the other (of its stratum), nothing
+ * scatters: there is no interval, and p is a bound. One observation of each cluster would be
+ * separated too, and without a difference those are as likely in any order: 2 / C(k_a + k_b, k_a)
+ * for k_a and k_b clusters that have any, a factor for every stratum; of paired samples 2 / 2^m for
+ * m pairs that both have. */
 
 typedef struct cp_superiority {
     double cliffs_delta;       /* P(b > a) - P(b < a), ties half, over the strata weighted with
@@ -22,7 +28,7 @@ typedef struct cp_superiority {
     double freedom;            /* likewise */
     cp_interval_status status; /* whether p and interval are given, or why not: either sample has
                                   too few observations (cp_sample_too_few), or no scatter */
-    double p;                  /* two-sided; NAN without */
+    double p;                  /* two-sided; NAN without; a bound with CP_INTERVAL_ALL_ALIKE */
     cp_interval interval;
 } cp_superiority;
 

@@ -107,6 +107,29 @@ static void censored_treatment_counts_as_lower(void **state)
     cp_sample_destroy(&b);
 }
 
+// Six clusters a sample, all of b above all of a: at most 2 / C(12, 6) by chance; paired 2 / 2^6.
+static void complete_separation_has_a_bound(void **state)
+{
+    (void)state;
+    const size_t cluster[] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 5};
+    cp_sample a = sample_of((const double[]){1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, cluster, 10, 8);
+    cp_sample b =
+        sample_of((const double[]){11, 12, 13, 14, 15, 16, 17, 18, 19, 20}, cluster, 10, 8);
+    cp_resampling r = cp_resampling_default();
+    r.cluster_count[0] = r.cluster_count[1] = 8;
+    cp_contrast contrast;
+    cp_error error = {0};
+    for (int paired = 0; paired < 2; paired++) {
+        r.paired = paired;
+        assert_int_equal(cp_contrast_samples(&a, &b, &r, &contrast, &error), CP_OK);
+        assert_true(contrast.superiority.cliffs_delta == 1.0);
+        assert_int_equal(contrast.superiority.interval.status, CP_INTERVAL_ALL_ALIKE);
+        assert_near(contrast.superiority.p, paired ? 2.0 / 64.0 : 2.0 / 924.0, 1e-12);
+    }
+    cp_sample_destroy(&a);
+    cp_sample_destroy(&b);
+}
+
 static void nothing_to_compare_gives_no_numbers(void **state)
 {
     (void)state;
@@ -163,6 +186,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(few_observations_give_figures_and_no_test),
         cmocka_unit_test(unlike_mixes_make_no_difference),
+        cmocka_unit_test(complete_separation_has_a_bound),
         cmocka_unit_test(censored_treatment_counts_as_lower),
         cmocka_unit_test(nothing_to_compare_gives_no_numbers),
         cmocka_unit_test(rates_are_tested_by_whole_replications),

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-enum { STUDIES = 300 };
+enum { STUDIES = 200 };
 
 static double reach(double share, double given)
 {
@@ -21,7 +21,7 @@ static null_counts simulate(simulated_design d)
 {
     null_counts c = {{0.0}, {0.0}};
     for (uint64_t k = 0; k < STUDIES; k++)
-        null_study(&d, 50000 + k, 400, 99, &c);
+        null_study(&d, 50000 + k, 300, 99, &c);
     return c;
 }
 

@@ -26,7 +26,10 @@ static const struct argp_option OPTIONS[] = {
     {"baseline", 'b', "VARIANT", 0, "compare with this variant (default: the study's baseline)", 0},
     {"scenario", 's', "NAME", 0, "crashes and exposure of this scenario only", 0},
     {"where", 'w', "SQL", 0, "only vehicles for which this holds, as in compare", 0},
-    {"inside", KEY_INSIDE, NULL, 0, "severity of vehicles inside the validated range only", 0},
+    {"inside", KEY_INSIDE, NULL, 0,
+     "describe vehicles inside the validated range only (olc, severity, map, sites, corridor); "
+     "differences and benefits are of all",
+     0},
     {0},
 };
 
@@ -46,8 +49,8 @@ static void read_kind(arguments *a, const char *text, struct argp_state *state)
         }
     }
     argp_error(state,
-               "KIND must be rates, olc, difference, severity, map, sites, outcomes, benefit or "
-               "corridor, found '%s'",
+               "KIND must be rates, olc, difference, severity, map, sites, outcomes, benefit, "
+               "corridor, above-olc or above-delta-v, found '%s'",
                text);
 }
 

@@ -60,21 +60,27 @@ static void add_rows(cp_table *table, const columns *c, size_t row)
 {
     char text[TEXT_SIZE], label[TEXT_SIZE];
     const cp_quantity *first = &c->list[0].row[row];
-    bool second_interval = row > 0 && strcmp(first->name, first[-1].name) == 0 && first->kind;
-    if (!first->label[0] && !(second_interval && first[-1].label[0]))
+    if (!first->label[0] && !first->second)
         return;
     if (first->label[0]) {
         cp_table_text(table, first->label);
         for (size_t k = 0; k < c->count; k++) {
-            cp_estimate estimate = c->list[k].row[row].estimate;
+            const cp_quantity *q = &c->list[k].row[row];
+            cp_estimate estimate = q->estimate;
             estimate.value *= first->factor;
-            cp_table_text(table, cp_estimate_text(estimate, first->digits, text));
+            cp_table_text(table, q->missing ? q->missing
+                                            : cp_estimate_text(estimate, first->digits, text));
         }
     }
     if (!first->kind)
         return;
-    snprintf(label, sizeof label, "    95 %% %s",
-             strcmp(first->kind, "poisson") == 0 ? "Poisson" : first->kind);
+    // Columns may have intervals of unlike kinds; then the row names none.
+    bool alike = true;
+    for (size_t k = 1; k < c->count; k++)
+        alike &= strcmp(c->list[k].row[row].kind, first->kind) == 0;
+    bool poisson = strncmp(first->kind, "poisson", 7) == 0;
+    snprintf(label, sizeof label, "    95 %% %s%s", poisson ? "Poisson" : first->kind,
+             poisson && alike ? first->kind + 7 : "");
     cp_table_text(table, label);
     for (size_t k = 0; k < c->count; k++)
         cp_table_text(table, interval_text(&c->list[k].row[row], text));
@@ -226,7 +232,9 @@ static void add_csv(cp_table *table, const char *group, const char *variant, con
         cp_table_real(table, q->estimate.value);
         cp_table_real(table, interval ? q->interval.low : NAN);
         cp_table_real(table, interval ? q->interval.high : NAN);
-        if (!q->kind)
+        if (q->missing)
+            cp_table_text(table, q->missing);
+        else if (!q->kind)
             cp_table_null(table);
         else
             cp_table_text(table, interval ? q->kind : cp_interval_status_text(q->interval.status));

@@ -24,6 +24,7 @@ typedef struct plot {
     size_t drawn;       /* values written: 0 means nothing to show */
     size_t block_count; /* blocks begun, or rows of a figure of intervals */
     FILE *variants;     /* of each block or row, numbers with blanks between */
+    FILE *bars;         /* the rows that have an interval, likewise */
 } plot;
 
 static const char NOTHING[] = "0\tNaN\tNaN\tNaN\n"; // a block needs a row
@@ -68,18 +69,28 @@ typedef struct row {
     cp_interval interval;
 } row;
 
+static bool closed(const row *r)
+{
+    return r->interval.status == CP_INTERVAL_VALUE && isfinite(r->interval.low) &&
+           isfinite(r->interval.high);
+}
+
 static void put_row(plot *p, const row *r)
 {
     if (isnan(r->value))
         return;
-    bool closed = r->interval.status == CP_INTERVAL_VALUE && isfinite(r->interval.low) &&
-                  isfinite(r->interval.high);
     char label[512];
     snprintf(label, sizeof label, "%.200s%s%.200s", name_of(p, r->variant), *r->label ? ": " : "",
              r->label);
     put_text(p->out, label);
-    fprintf(p->out, "\t%.9g\t%zu\t%.9g\t%.9g\n", r->value, p->drawn,
-            closed ? r->interval.low : r->value, closed ? r->interval.high : r->value);
+    fprintf(p->out, "\t%.9g\t%zu", r->value, p->drawn);
+    // No bar where there is no interval: none of no width is drawn.
+    if (closed(r)) {
+        fprintf(p->out, "\t%.9g\t%.9g\n", r->interval.low, r->interval.high);
+        fprintf(p->bars, "%zu ", p->drawn);
+    } else {
+        fputs("\tNaN\tNaN\n", p->out);
+    }
     fprintf(p->variants, "%zu ", r->variant);
     p->block_count++;
     p->drawn++;
@@ -100,12 +111,18 @@ static cp_status plot_rates(plot *p, cp_error *error)
     for (size_t k = 0; k < c->variant_count; k++) {
         const cp_variant_figures *v = &c->variant[k];
         bool bootstrap = v->rate_bootstrap.status == CP_INTERVAL_VALUE;
-        rows[k] = (row){v->variant, bootstrap ? "" : "Poisson", v->rate,
-                        bootstrap ? v->rate_bootstrap : v->rate_garwood};
+        rows[k] =
+            (row){v->variant, bootstrap ? "" : "Poisson, widened", v->rate, cp_rate_interval(v)};
     }
     write_rows(p, rows, c->variant_count);
     free(rows);
     return CP_OK;
+}
+
+// A difference that censoring leaves open has no place on an axis.
+static double known(cp_estimate estimate)
+{
+    return estimate.relation == CP_EXACTLY ? estimate.value : NAN;
 }
 
 static cp_status plot_difference(plot *p, cp_error *error)
@@ -116,11 +133,11 @@ static cp_status plot_difference(plot *p, cp_error *error)
         return cp_fail_memory(error, "a figure");
     size_t count = 0;
     for (size_t k = 0; k < c->contrast_count; k++) {
-        const cp_contrast *o = &c->contrast[k].severity[CP_QUANTITY_OLC][p->scope];
+        const cp_contrast *o = &c->contrast[k].severity[CP_QUANTITY_OLC];
         size_t v = c->contrast[k].variant;
-        rows[count++] = (row){v, "median", o->median_difference.value, o->median_interval};
-        rows[count++] = (row){v, "mean", o->mean_difference.value, o->mean_interval};
-        rows[count++] = (row){v, "90 % quantile", o->p90_difference.value, o->p90_interval};
+        rows[count++] = (row){v, "median", known(o->median_difference), o->median_interval};
+        rows[count++] = (row){v, "mean", known(o->mean_difference), o->mean_interval};
+        rows[count++] = (row){v, "90 % quantile", known(o->p90_difference), o->p90_interval};
     }
     for (size_t k = 0; k < c->counterfactual_count; k++) {
         const cp_counterfactual_figures *f = &c->counterfactual[k];
@@ -150,8 +167,7 @@ static cp_status plot_benefit(plot *p, cp_error *error)
         bool pairs = k >= c->contrast_count;
         const cp_counterfactual_figures *f = &c->counterfactual[pairs ? k - c->contrast_count : 0];
         for (size_t r = 0; r < risks; r++, count++) {
-            const cp_benefit_figures *b =
-                pairs ? &f->benefit[r] : &c->contrast[k].benefit[p->scope][r];
+            const cp_benefit_figures *b = pairs ? &f->benefit[r] : &c->contrast[k].benefit[r];
             const cp_study_risk *risk = &p->data->risk[r];
             snprintf(label[count], sizeof label[count], "%.50s (%.50s)", risk->level, risk->name);
             rows[count] =
@@ -220,6 +236,31 @@ static cp_status plot_olc(plot *p, cp_error *error)
         cp_replication_set_destroy(&set);
         if (status != CP_OK)
             return status;
+    }
+    return CP_OK;
+}
+
+// Crashes above a severity per vehicle-km over that severity, with the band of single points.
+static cp_status plot_exceedance(plot *p, int what, cp_error *error)
+{
+    (void)error;
+    const cp_comparison *c = p->comparison;
+    double factor = what == CP_EXCEEDED_DELTA_V ? 3.6 : 1.0;
+    for (size_t k = 0; k < c->variant_count; k++) {
+        char title[512];
+        snprintf(title, sizeof title, "%.400s, 95 %% at each point",
+                 name_of(p, c->variant[k].variant));
+        begin_block(p, c->variant[k].variant, title);
+        for (size_t j = 0; j < CP_EXCEEDANCE_POINTS; j++) {
+            const cp_exceedance *e = &c->variant[k].curve[what][j];
+            if (isnan(e->rate)) {
+                fputs(NOTHING, p->out);
+                break;
+            }
+            fprintf(p->out, "%.6g\t%.6g\t%.6g\t%.6g\n", factor * e->x, e->rate, e->interval.low,
+                    e->interval.high);
+            p->drawn += e->crashes;
+        }
     }
     return CP_OK;
 }
@@ -364,6 +405,10 @@ static cp_status write_data(plot *p, cp_plot_kind kind, cp_error *error)
         return plot_benefit(p, error);
     case CP_PLOT_CORRIDOR:
         return plot_corridor(p, error);
+    case CP_PLOT_ABOVE_OLC:
+        return plot_exceedance(p, CP_EXCEEDED_OLC, error);
+    case CP_PLOT_ABOVE_DELTA_V:
+        return plot_exceedance(p, CP_EXCEEDED_DELTA_V, error);
     case CP_PLOT_KIND_COUNT:
         break;
     }
@@ -373,7 +418,7 @@ static cp_status write_data(plot *p, cp_plot_kind kind, cp_error *error)
 static cp_status write_streams(plot *p, cp_plot_kind kind, cp_error *error)
 {
     cp_status status = write_data(p, kind, error);
-    if (status == CP_OK && (ferror(p->out) || ferror(p->variants)))
+    if (status == CP_OK && (ferror(p->out) || ferror(p->variants) || ferror(p->bars)))
         status = cp_fail_memory(error, "a figure");
     if (status == CP_OK && p->drawn == 0)
         status = cp_fail(error, CP_BAD_INPUT, "there is nothing to draw: no such crash");
@@ -383,19 +428,23 @@ static cp_status write_streams(plot *p, cp_plot_kind kind, cp_error *error)
 // Data of a figure as text, and the numbers that its script begins with.
 static cp_status make(plot *p, cp_plot_kind kind, char **data, char **numbers, cp_error *error)
 {
-    size_t data_size = 0, variants_size = 0;
-    char *variants = NULL;
+    size_t data_size = 0, variants_size = 0, bars_size = 0;
+    char *variants = NULL, *bars = NULL;
     p->out = open_memstream(data, &data_size);
     p->variants = open_memstream(&variants, &variants_size);
-    cp_status status =
-        p->out && p->variants ? write_streams(p, kind, error) : cp_fail_memory(error, "a figure");
+    p->bars = open_memstream(&bars, &bars_size);
+    cp_status status = p->out && p->variants && p->bars ? write_streams(p, kind, error)
+                                                        : cp_fail_memory(error, "a figure");
     int bad = p->out && fclose(p->out) != 0;
     bad |= p->variants && fclose(p->variants) != 0;
-    if (status == CP_OK && (bad || (*numbers = malloc(variants_size + 64)) == NULL))
+    bad |= p->bars && fclose(p->bars) != 0;
+    if (status == CP_OK && (bad || (*numbers = malloc(variants_size + bars_size + 64)) == NULL))
         status = cp_fail_memory(error, "a figure");
     if (status == CP_OK)
-        sprintf(*numbers, "n = %zu\nvariants = \"%s\"\n", p->block_count, variants);
+        sprintf(*numbers, "n = %zu\nvariants = \"%s\"\nbars = \"%s\"\n", p->block_count,
+                variants != NULL ? variants : "", bars != NULL ? bars : "");
     free(variants);
+    free(bars);
     if (status != CP_OK) {
         free(*data);
         *data = NULL;
@@ -424,14 +473,17 @@ static const char BEGIN_SCRIPT[] = "set encoding utf8\n"
                                    "fills = \"#009e73 #0072b2 #4d5a68 #d55e00 #b0518e #d9dde2\"\n"
                                    "number(k) = int(word(variants, k + 1)) % 6 + 1\n"
                                    "colour(k) = word(colours, number(k))\n"
-                                   "point(k) = int(word(points, number(k)))\n";
+                                   "point(k) = int(word(points, number(k)))\n"
+                                   "bar(j) = words(bars) < j ? 0 : int(word(bars, j))\n";
 
 #define GRID "set grid lc rgb \"#d9dde2\"\n"
 #define ROWS                                                                                       \
     "set xrange [*<0:0<*]\nset yrange [n - 0.5:-0.5]\nset grid xtics lc rgb \"#d9dde2\"\n"         \
     "unset key\n"                                                                                  \
-    "plot for [k=0:n-1] \"data\" every ::k::k using 2:3:4:5:ytic(1) with xerrorbars lw 2 "         \
-    "pt point(k) ps 1 lc rgb colour(k)\n"
+    "plot for [k=0:n-1] \"data\" every ::k::k using 2:3:ytic(1) with points "                      \
+    "pt point(k) ps 1 lc rgb colour(k), "                                                          \
+    "for [j=1:words(bars)] \"data\" every ::bar(j)::bar(j) using 2:3:4:5 with xerrorbars lw 2 "    \
+    "pt point(bar(j)) ps 1 lc rgb colour(bar(j))\n"
 #define ZERO "set arrow from 0, graph 0 to 0, graph 1 nohead lc rgb \"#1c2430\"\n"
 #define CURVES                                                                                     \
     GRID "set key autotitle columnhead\n"                                                          \
@@ -439,6 +491,9 @@ static const char BEGIN_SCRIPT[] = "set encoding utf8\n"
          "solid 0.15 noborder lc rgb colour(k) notitle, "                                          \
          "for [k=0:n-1] \"data\" index k using 1:2 with lines lw 2 lc rgb colour(k) "              \
          "title columnhead(2)\n"
+#define ABOVE                                                                                      \
+    "set ylabel \"frontal crashes above it per 10^6 vehicle-km\"\n"                                \
+    "set xrange [0:*]\nset yrange [0:*]\nset key top right\n"
 #define POINTS(columns, ink)                                                                       \
     GRID "set key autotitle columnhead\n"                                                          \
          "plot for [k=0:n-1] \"data\" index k using " columns " with points pt point(k) ps 0.6 "   \
@@ -453,6 +508,8 @@ static const char *const SCRIPT[CP_PLOT_KIND_COUNT] = {
                     "set xrange [0:*]\nset key bottom right\n" CURVES,
     [CP_PLOT_CORRIDOR] = "set xlabel \"time from first contact, ms\"\n"
                          "set ylabel \"deceleration, g (CFC60)\"\nset key top right\n" CURVES,
+    [CP_PLOT_ABOVE_OLC] = "set xlabel \"OLC, g\"\n" ABOVE CURVES,
+    [CP_PLOT_ABOVE_DELTA_V] = "set xlabel \"delta-v, km/h\"\n" ABOVE CURVES,
     [CP_PLOT_SEVERITY] =
         "set xlabel \"closing speed, km/h\"\nset ylabel \"OLC, g\"\nset key top left\n"
         "set xrange [0:*]\nset yrange [0:*]\n" POINTS("1:2", "rgb colour(k)"),

@@ -17,7 +17,9 @@
     X(CP_PLOT_SITES, "sites", "where they crash, in the plane of the network")                     \
     X(CP_PLOT_OUTCOMES, "outcomes", "counterfactual outcomes of each treatment")                   \
     X(CP_PLOT_BENEFIT, "benefit", "benefit in expected injured drivers")                           \
-    X(CP_PLOT_CORRIDOR, "corridor", "pulse corridors of each variant")
+    X(CP_PLOT_CORRIDOR, "corridor", "pulse corridors of each variant")                             \
+    X(CP_PLOT_ABOVE_OLC, "above-olc", "crashes above an OLC per vehicle-km, over that OLC")        \
+    X(CP_PLOT_ABOVE_DELTA_V, "above-delta-v", "the same of delta-v")
 
 typedef enum cp_plot_kind {
 #define CP_PLOT_NAME(kind, name, what) kind,

@@ -88,7 +88,7 @@ static void data_hold_the_figures(void **state)
     for (size_t k = 0; k < 2; k++) {
         const cp_variant_figures *v = &f->comparison.variant[k];
         snprintf(wanted, sizeof wanted, "\t%.9g\t%zu\t%.9g\t%.9g\n", v->rate, k,
-                 v->rate_garwood.low, v->rate_garwood.high);
+                 v->rate_widened.low, v->rate_widened.high);
         assert_non_null(strstr(data, wanted));
     }
     free(data);

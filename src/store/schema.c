@@ -145,11 +145,14 @@ cp_status cp_schema_migrate(cp_store *store, cp_error *error)
     cp_status status = cp_store_begin(store, error);
     if (status != CP_OK)
         return status;
+    // What a file of db/schema changes in the text of a table; by no other SQL.
+    sqlite3_db_config(cp_store_sqlite(store), SQLITE_DBCONFIG_DEFENSIVE, 0, NULL);
     status = migrate_locked(store, error);
     if (status == CP_OK)
         status = cp_store_commit(store, error);
     if (status != CP_OK)
         cp_store_rollback(store);
+    sqlite3_db_config(cp_store_sqlite(store), SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     return status;
 }
 

@@ -56,6 +56,18 @@ JOIN replication AS r ON r.id = c.replication_id
 JOIN scenario AS s ON s.id = cv.scenario_id
 JOIN variant AS v ON v.id = cv.variant_id;
 
+-- Why a vehicle's severity lies outside the validated range: one row a reason, none for a vehicle that
+-- lies inside (its validity is the list of them, or 'inside').
+DROP VIEW IF EXISTS validity_reason;
+CREATE VIEW validity_reason AS
+SELECT s.name AS scenario, v.name AS variant, cv.crash_id, cv.role, cv.frontal, cv.crash_type,
+       r.value AS reason
+FROM crash_vehicle AS cv
+JOIN scenario AS s ON s.id = cv.scenario_id
+JOIN variant AS v ON v.id = cv.variant_id
+JOIN json_each('["' || replace(cv.validity, ',', '","') || '"]') AS r
+WHERE cv.validity <> 'inside';
+
 -- OLC over the frontally struck vehicles of each variant. The median counts left-censored vehicles
 -- below every value; NULL when it falls among them (then it is below the smallest value) or when
 -- there is no vehicle. share_inside_validity: of the frontal vehicles.
@@ -98,7 +110,8 @@ SELECT v.name AS variant, v.id AS variant_id, v.is_baseline AS is_baseline,
                       AND o.olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s'))
               WHERE place >= (k.n + 1) / 2 LIMIT 2)
         WHERE place <= k.n / 2 + 1) AS olc_median_g,
-       k.mean_g AS olc_mean_g, -- of the vehicles with a value only
+       -- NULL with left-censored vehicles: without them it would rise as crashes get milder
+       CASE WHEN k.censored = 0 THEN k.mean_g END AS olc_mean_g,
        (SELECT min(o.olc_g) FROM crash_vehicle AS o
         WHERE o.variant_id = v.id
           AND o.olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')) AS olc_min_g,

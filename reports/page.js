@@ -197,11 +197,11 @@
   // ---- crash rates ----------------------------------------------------------------------------------
 
   const rateFigure = figure("figure-rate", "Frontal crash rate",
-    () => "Frontal crashes per million vehicle-km, of any validity. Thick: 95 % bootstrap over replications, from 20 replications on. Thin: exact Poisson interval, too narrow where replications differ (dispersion above 1).",
+    () => "Frontal crashes per million vehicle-km, of any validity. Thick: 95 % bootstrap over replications, from 20 replications on. Thin: 95 % interval of Poisson counts, widened by what replications scatter more (dispersion above 1), from any number of them; with one replication a scenario that is not known and not in it.",
     function (svg, width) {
       const rows = shownVariants(), margin = { top: 8, right: 16, bottom: 48, left: 16 };
       const band = Math.max(58, Math.min(104, 300 / rows.length)), height = margin.top + band * rows.length + margin.bottom, w = width - margin.left - margin.right;
-      const upper = d3.max(rows, v => d3.max([v.frontal_crashes_per_million_km.value, v.frontal_crashes_per_million_km.garwood.high, v.frontal_crashes_per_million_km.bootstrap.high]));
+      const upper = d3.max(rows, v => d3.max([v.frontal_crashes_per_million_km.value, v.frontal_crashes_per_million_km.widened.high, v.frontal_crashes_per_million_km.bootstrap.high]));
       const x = d3.scaleLinear().domain([0, upper || 1]).nice().range([0, w]);
       const inner = svg.append("g").attr("transform", `translate(${margin.left},${margin.top})`), h = band * rows.length;
       const ticks = Math.max(3, Math.round(w / 90));
@@ -212,13 +212,13 @@
         const k = indexOf(v.variant), r = v.frontal_crashes_per_million_km, y = band * (row + 0.5) + 10;
         const label = inner.append("text").attr("y", y - 16);
         label.append("tspan").style("font-weight", 600).text(v.variant);
-        label.append("tspan").attr("class", "soft").text(`  ${v.frontal_crashes} crashes in ${integer(Math.round(v.vehicle_km))} veh-km${width < 460 ? "" : `, dispersion ${fixed(r.dispersion, 2)}`}`);
+        label.append("tspan").attr("class", "soft").text(`  ${v.frontal_crashes} crashes in ${integer(Math.round(v.vehicle_km))} veh-km${width < 460 ? "" : `, dispersion ${fixed(r.widening.dispersion, 2)}`}`);
         if (missing(r.value)) return;
         const bar = (i, thick) => i.status === "value" && inner.append("line").attr("x1", x(i.low)).attr("x2", x(i.high)).attr("y1", y).attr("y2", y)
           .style("stroke", colour(k)).style("stroke-width", thick).style("opacity", thick > 3 ? 0.45 : 1);
         bar(r.bootstrap, 9);
-        bar(r.garwood, 1.8);
-        for (const end of [r.garwood.low, r.garwood.high])
+        bar(r.widened, 1.8);
+        for (const end of r.widened.status === "value" ? [r.widened.low, r.widened.high] : [])
           inner.append("line").attr("x1", x(end)).attr("x2", x(end)).attr("y1", y - 6).attr("y2", y + 6).style("stroke", colour(k)).style("stroke-width", 1.8);
         inner.append("path").attr("d", symbol(k, 95)).attr("transform", `translate(${x(r.value)},${y})`).style("fill", colour(k));
       });
@@ -227,11 +227,11 @@
     function () {
       const rows = shownVariants().map(v => {
         const r = v.frontal_crashes_per_million_km, boot = r.bootstrap.status === "value";
-        return [v.variant, v.replications, v.vehicle_km, v.frontal_crashes, r.value, r.garwood.low, r.garwood.high, boot ? r.bootstrap.low : r.bootstrap.status, boot ? r.bootstrap.high : r.bootstrap.status, r.dispersion];
+        return [v.variant, v.replications, v.vehicle_km, v.frontal_crashes, r.value, r.widened.low, r.widened.high, boot ? r.bootstrap.low : r.bootstrap.status, boot ? r.bootstrap.high : r.bootstrap.status, r.widening.dispersion];
       });
       return {
         summary: shownVariants().map(v => `${v.variant}: ${rate(v.frontal_crashes_per_million_km.value)}`).join("; "),
-        columns: ["variant", "replications", "vehicle_km", "frontal_crashes", "per_million_km", "garwood_low", "garwood_high", "bootstrap_low", "bootstrap_high", "dispersion"],
+        columns: ["variant", "replications", "vehicle_km", "frontal_crashes", "per_million_km", "widened_low", "widened_high", "bootstrap_low", "bootstrap_high", "dispersion"],
         rows: rows
       };
     });
@@ -300,9 +300,9 @@
   function differences() {
     const rows = [];
     shownContrasts().forEach(c => {
-      const o = c.olc_g[state.scope];
+      const o = c.olc_g;
       [["median", o.median_difference, o.median_interval], ["mean", o.mean_difference, o.mean_interval], ["90 % quantile", o.p90_difference, o.p90_interval]]
-        .forEach(([what, e, i]) => rows.push({ name: c.variant, what: `difference of ${what}`, value: missing(e) ? null : e.value, low: i.low, high: i.high, status: i.status }));
+        .forEach(([what, e, i]) => rows.push({ name: c.variant, what: `difference of ${what}`, value: missing(e) || e.relation !== "=" ? null : e.value, low: i.low, high: i.high, status: i.status }));
     });
     shownPairs().forEach(c => [["all_pairs", "paired change, avoided = 0 g"], ["conditional_on_crashing", "paired change, conditional on crashing"]].forEach(([key, what]) => {
       const p = c.olc_change_g[key], i = p.hodges_lehmann_interval;
@@ -312,7 +312,7 @@
   }
 
   const differenceFigure = figure("figure-difference", "Change of OLC against the baseline",
-    () => (slice().counterfactual.length ? "Hodges–Lehmann estimate of the change within pairs" : "Treatment minus baseline") + `, over ${scopeText()}, with 95 % bootstrap intervals over replications${differences().some(r => r.status === "value") ? "" : ": too few replications for any here"}. Left of zero: less severe.`,
+    () => (slice().counterfactual.length ? "Hodges–Lehmann estimate of the change within pairs, of the larger OLC of a crash’s frontally struck vehicles" : "Treatment minus baseline, both at the same mix of scenarios, over all frontally struck vehicles") + `, with 95 % bootstrap intervals over replications; without one, the reason stands beside the value. Means of left-censored vehicles are not known and not drawn. Left of zero: less severe.`,
     function (svg, width) {
       const rows = differences(), margin = { top: 10, right: 16, bottom: 48, left: 16 }, band = 46, h = band * rows.length, w = width - margin.left - margin.right;
       const reach = d3.max(rows, r => d3.max([r.value, r.low, r.high].filter(v => !missing(v)).map(Math.abs))) || 1;
@@ -324,9 +324,9 @@
       inner.append("text").attr("class", "axis-title").attr("x", w / 2).attr("y", h + 38).attr("text-anchor", "middle").text("change of OLC, g");
       rows.forEach((r, k) => {
         const v = indexOf(r.name), y = band * (k + 0.5) + 9;
-        const label = inner.append("text").attr("y", y - 15);
+        const label = inner.append("text").attr("class", "over").attr("y", y - 15);
         label.append("tspan").style("font-weight", 600).text(r.name);
-        label.append("tspan").attr("class", "soft").text(`  ${r.what}: ${fixed(r.value, 1)} g${r.status === "value" && width > 460 ? ` (${interval({ status: "value", low: r.low, high: r.high }, n => fixed(n, 1))})` : ""}`);
+        label.append("tspan").attr("class", "soft").text(`  ${r.what}: ${fixed(r.value, 1)} g${width > 460 ? ` (${interval({ status: r.status, low: r.low, high: r.high }, n => fixed(n, 1))})` : ""}`);
         if (r.status === "value") inner.append("line").attr("x1", x(missing(r.low) ? x.domain()[0] : r.low)).attr("x2", x(missing(r.high) ? x.domain()[1] : r.high)).attr("y1", y).attr("y2", y).style("stroke", colour(v)).style("stroke-width", 2.4);
         inner.append("path").attr("d", symbol(v, 80)).attr("transform", `translate(${x(r.value)},${y})`).style("fill", colour(v));
       });
@@ -335,6 +335,30 @@
     function () {
       const rows = differences().map(r => [r.name, r.what, r.value, r.low, r.high, r.status]);
       return { summary: rows.map(r => `${r[0]}, ${r[1]}: ${fixed(r[2], 1)} g`).join("; "), columns: ["treatment", "change", "olc_g", "low", "high", "interval"], rows: rows };
+    });
+
+  // ---- crashes above a severity ------------------------------------------------------------------------
+
+  const above = () => shownVariants().map(v => Object.assign({ variant: indexOf(v.variant), name: v.variant }, v.crashes_above.olc.curve)).filter(c => !missing(c.per_million_km[0]));
+
+  const aboveFigure = figure("figure-above", "Crashes above a severity",
+    () => "Frontal crashes whose OLC exceeds the value, per million vehicle-km: rate and severity in one, which a treatment cannot change by moving crashes out of what is looked at. The larger OLC of the frontally struck vehicles of a crash, extrapolated ones included; band: 95 % at each value by itself. The table has how many are certain, and how many possible, if severities outside the validated range count as unknown.",
+    function (svg, width) {
+      const curves = above(), top = legend(svg, width, curves.map(c => ({ variant: c.variant, label: c.name })), lineMark);
+      const margin = { top: top + 4, right: 16, bottom: 48, left: 66 }, height = margin.top + Math.min(330, 140 + width * 0.35) + margin.bottom;
+      const last = d3.max(curves, c => d3.max(c.x.filter((x, k) => c.crashes[k] > 0))) || 1;
+      const x = d3.scaleLinear().domain([0, last + 2]).range([0, width - margin.left - margin.right]);
+      const y = d3.scaleLinear().domain([0, d3.max(curves, c => d3.max(c.high)) || 1]).nice().range([height - margin.top - margin.bottom, 0]);
+      const inner = frame(svg, width, height, margin, x, y, "OLC, g", "crashes above it per 10⁶ veh-km"), shown = c => c.x.filter(v => v <= last + 2);
+      curves.forEach(c => inner.append("path").attr("class", "band").attr("d", d3.area().x(v => x(v)).y0((v, k) => y(c.low[k])).y1((v, k) => y(c.high[k]))(shown(c))).style("fill", colour(c.variant)).style("opacity", 0.16));
+      curves.forEach(c => inner.append("path").attr("d", d3.line().x(v => x(v)).y((v, k) => y(c.per_million_km[k]))(shown(c))).style("fill", "none").style("stroke", colour(c.variant)).style("stroke-width", 2.2).style("stroke-dasharray", DASHES[c.variant % 6]));
+      readout(svg, inner, x, y.range()[0], value => { const k = Math.min(curves[0].x.length - 1, Math.round(value)); return [`above ${k} g`, ...curves.map(c => `${c.name}: ${rate(c.per_million_km[k])} (${rate(c.low[k])} to ${rate(c.high[k])})`)]; });
+      return height;
+    },
+    function () {
+      const rows = [];
+      above().forEach(c => c.x.forEach((x, k) => rows.push([c.name, x, c.crashes[k], c.at_least[k], c.at_most[k], c.per_million_km[k], c.low[k], c.high[k]])));
+      return { summary: shownVariants().map(v => `${v.variant}: ${rate(v.crashes_above.olc.per_million_km)} above ${v.crashes_above.olc.x} g`).join("; "), columns: ["variant", "above_olc_g", "crashes", "at_least", "at_most", "per_million_km", "low", "high"], rows: rows };
     });
 
   // ---- pairs one by one: OLC without and with the treatment -----------------------------------------
@@ -366,7 +390,7 @@
   const pairedFigure = !data.pairs ? null : figure("figure-paired", "OLC without and with the treatment, pair by pair",
     () => (data.pairs.crash
       ? "A point is a frontal crash of the baseline: across its OLC, up what it became with the treatment, 0 when avoided; the larger of its frontally struck vehicles."
-      : `A point is a seed run with both: mean OLC over ${scopeText()}. Of ${integer(seedsRun())} seeds, those with such a vehicle in both runs; traffic differs after the first intervention, so a pair is of seeds, not of crashes.`) +
+      : `A point is a seed run with both: mean OLC over ${scopeText()}, left-censored ones as 0 g. Of ${integer(seedsRun())} seeds, those with such a vehicle in both runs; traffic differs after the first intervention, so a pair is of seeds, not of crashes.`) +
       " Below the line: less severe." + (data.pairs.crash ? thinned() : ""),
     function (svg, width) {
       const points = pairs(), top = legend(svg, width, [...new Set(points.map(p => p.variant))].sort(d3.ascending).map(v => ({ variant: v, label: `${data.variants[v].name} (n = ${points.filter(p => p.variant === v).length}, ${points.filter(p => p.variant === v && p.treated < p.baseline).length} lower)` })), pointMark);
@@ -518,12 +542,12 @@
   const OUTCOME_COLOUR = { avoided: "var(--v3)", mitigated: "var(--v1)", unchanged: "var(--v0)", aggravated: "var(--v2)", changed_opponent: "var(--v4)", invalid: "var(--line)" };
 
   const flowFigure = data.study.design !== "counterfactual" ? null : figure("figure-flow", "What became of the baseline’s frontal crashes",
-    () => "Each baseline crash run again from a checkpoint before contact with the treatment on its two vehicles; outcomes by closing speed (±0.5 m/s), they add up to the baseline’s crashes. Shares are of the valid pairs, with 95 % intervals over replications.",
+    () => "Each baseline crash run again from a checkpoint before contact with the treatment on its two vehicles; outcomes by closing speed (±0.5 m/s), they add up to the baseline’s crashes. Shares are of the valid pairs, with 95 % intervals that allow for what replications scatter. The table has the crashes that were inside the validated range with the baseline apart.",
     function (svg, width) {
       const treatments = shownPairs(), panel = 250, left = 92, right = Math.min(290, 0.52 * width);
       treatments.forEach((t, place) => {
         const g = svg.append("g").attr("transform", `translate(0,${place * panel + 22})`), height = panel - 60, scale = (height - 50) / Math.max(1, t.crashes);
-        g.append("text").attr("x", 4).attr("y", -6).style("font-weight", 600).text(t.variant);
+        g.append("text").attr("x", 4).attr("y", -6).style("font-weight", 600).text(t.new_crashes > 0 ? `${t.variant} (${integer(t.new_crashes)} new crash${t.new_crashes === 1 ? "" : "es"} between others besides)` : t.variant);
         g.append("rect").attr("x", left - 14).attr("width", 14).attr("height", Math.max(1, t.crashes * scale)).style("fill", "var(--v0)");
         g.append("text").attr("x", left - 20).attr("y", t.crashes * scale / 2).attr("text-anchor", "end").text(`${t.crashes} crashes`);
         let from = 0, to = 0;
@@ -544,21 +568,21 @@
     },
     function () {
       const rows = [];
-      shownPairs().forEach(t => OUTCOMES.forEach(o => rows.push([t.variant, o, t.outcomes[o], t.outcomes_by_olc[o], o === "invalid" ? null : t.outcomes[o] / t.valid, o === "invalid" ? null : t.shares[o].low, o === "invalid" ? null : t.shares[o].high])));
-      return { summary: shownPairs().map(t => `${t.variant}: ${t.outcomes.avoided} of ${t.valid} valid pairs avoided`).join("; "), columns: ["treatment", "outcome", "crashes", "crashes_by_olc", "share_of_valid", "low", "high"], rows: rows };
+      shownPairs().forEach(t => OUTCOMES.forEach(o => rows.push([t.variant, o, t.outcomes[o], t.outcomes_by_olc[o], t.baseline_inside.outcomes[o], o === "invalid" ? null : t.outcomes[o] / t.valid, o === "invalid" ? null : t.shares[o].low, o === "invalid" ? null : t.shares[o].high])));
+      return { summary: shownPairs().map(t => `${t.variant}: ${t.outcomes.avoided} of ${t.valid} valid pairs avoided`).join("; "), columns: ["treatment", "outcome", "crashes", "crashes_by_olc", "baseline_inside", "share_of_valid", "low", "high"], rows: rows };
     });
 
   // ---- expected injuries --------------------------------------------------------------------------------
 
   function benefits() {
     const rows = [];
-    shownContrasts().forEach(c => c.injury_benefit[state.scope].forEach(b => rows.push(Object.assign({ name: c.variant }, b))));
+    shownContrasts().forEach(c => c.injury_benefit.forEach(b => rows.push(Object.assign({ name: c.variant }, b))));
     shownPairs().forEach(c => c.injury_benefit.forEach(b => rows.push(Object.assign({ name: c.variant }, b))));
     return rows;
   }
 
   const benefitFigure = figure("figure-benefit", "Benefit in expected injured drivers",
-    () => "Per cent fewer injured drivers per vehicle-km than with the baseline (counterfactual: of the same crashes, avoided = 0), by risk function, 95 % bootstrap over replications. Both drivers of the frontal crashes; functions of delta-v, none of OLC.",
+    () => "Per cent fewer injured drivers per vehicle-km than with the baseline (counterfactual: of the same crashes, avoided = 0), by risk function, 95 % bootstrap over replications (none where crashes are too few). Both drivers of the frontal crashes; functions of delta-v, none of OLC. The table has what is left when severities outside the validated range count as unknown.",
     function (svg, width) {
       const rows = benefits().filter(b => !missing(b.benefit_1)), margin = { top: 10, right: 16, bottom: 48, left: 16 }, band = 40, h = band * rows.length, w = width - margin.left - margin.right;
       const low = d3.min(rows, b => d3.min([b.benefit_1, missing(b.interval.low) ? b.benefit_1 : b.interval.low])) || 0;
@@ -568,17 +592,17 @@
       inner.append("g").attr("class", "axis").attr("transform", `translate(0,${h})`).call(d3.axisBottom(x).ticks(6).tickFormat(d3.format(".0%")).tickSizeOuter(0));
       inner.append("text").attr("class", "axis-title").attr("x", w / 2).attr("y", h + 38).attr("text-anchor", "middle").text("fewer expected injured drivers");
       rows.forEach((b, k) => {
-        const v = indexOf(b.name), y = band * (k + 0.5) + 8, label = inner.append("text").attr("y", y - 13);
+        const v = indexOf(b.name), y = band * (k + 0.5) + 8, label = inner.append("text").attr("class", "over").attr("y", y - 13);
         label.append("tspan").style("font-weight", 600).text(b.name);
-        label.append("tspan").attr("class", "soft").text(`  ${b.level} (${b.function}): ${percent(b.benefit_1)}${b.interval.status === "value" && width > 460 ? ` (${interval(b.interval, percent)})` : ""}`);
+        label.append("tspan").attr("class", "soft").text(`  ${b.level} (${b.function}): ${percent(b.benefit_1)}${width > 460 ? ` (${interval(b.interval, percent)})` : ""}`);
         if (b.interval.status === "value") inner.append("line").attr("x1", x(missing(b.interval.low) ? x.domain()[0] : b.interval.low)).attr("x2", x(missing(b.interval.high) ? 1 : b.interval.high)).attr("y1", y).attr("y2", y).style("stroke", colour(v)).style("stroke-width", 2.4);
         inner.append("path").attr("d", symbol(v, 70)).attr("transform", `translate(${x(b.benefit_1)},${y})`).style("fill", colour(v));
       });
       return margin.top + h + margin.bottom;
     },
     function () {
-      const rows = benefits().map(b => [b.name, b.level, b.function, b.baseline, b.treatment, b.benefit_1, b.interval.low, b.interval.high, b.interval.status]);
-      return { summary: rows.map(r => `${r[0]}, ${r[1]} (${r[2]}): ${percent(r[5])}`).join("; "), columns: ["treatment", "level", "function", "expected_baseline", "expected_treatment", "benefit_1", "low", "high", "interval"], rows: rows };
+      const rows = benefits().map(b => [b.name, b.level, b.function, b.baseline, b.treatment, b.benefit_1, b.interval.low, b.interval.high, b.interval.status, b.bounds_1[0], b.bounds_1[1]]);
+      return { summary: rows.map(r => `${r[0]}, ${r[1]} (${r[2]}): ${percent(r[5])}`).join("; "), columns: ["treatment", "level", "function", "expected_baseline", "expected_treatment", "benefit_1", "low", "high", "interval", "at_least", "at_most"], rows: rows };
     });
 
   // ---- pulse corridors ------------------------------------------------------------------------------------
@@ -683,8 +707,9 @@
       line("Exposure, vehicle-km", integer(Math.round(v.vehicle_km)));
       line("Frontal crashes", integer(v.frontal_crashes), undefined, "frontal_crashes");
       line("of these front-front inside range", integer(v.front_front_inside), undefined, "front_front_inside");
-      const headline = r.bootstrap.status === "value" ? r.bootstrap : r.garwood;
-      line("Rate per 10⁶ veh-km", rate(r.value), headline.status === "value" ? `95 % ${interval(headline, rate)}${headline === r.bootstrap ? "" : " (Poisson)"}` : undefined);
+      line("Rate per 10⁶ veh-km", rate(r.value), r.interval.status === "value" ? `95 % ${interval(r.interval, rate)}${r.bootstrap.status === "value" ? "" : " (Poisson, widened)"}` : undefined);
+      const above = v.crashes_above.olc;
+      line(`Above ${above.x} g per 10⁶ veh-km`, rate(above.per_million_km), `${above.crashes} crashes; ${interval(above.interval, rate)}`);
       line("Vehicles struck on the front", integer(v.frontal_vehicles), `${percent(v.share_inside_validity)} inside validated range`, "frontal_vehicles");
       line("Median OLC, g", estimate(olc.median, 1), `n = ${olc.n}${olc.censored ? `, ${olc.censored} censored` : ""}`, "median");
     });
@@ -711,7 +736,7 @@
     const rows = [];
     shownVariants().forEach(v => ["all", "inside"].forEach(scope => {
       const d = v.olc_g[scope];
-      rows.push([v.variant, scope === "all" ? "all" : "inside range", d.n, d.censored, fixed(d.mean, 1), fixed(d.sd, 1),
+      rows.push([v.variant, scope === "all" ? "all" : "inside range", d.n, d.censored, estimate(d.mean, 1), fixed(d.sd, 1),
         ...[d.min, d.q25, d.median, d.q75, d.p90, d.p95, d.max].map(e => estimate(e, 1))]);
     }));
     return {
@@ -720,22 +745,27 @@
     };
   });
 
-  const contrastTable = tableSection("contrasts", "paired_replications", function () {
+  const contrastTable = tableSection("contrasts", "", function () {
     const rows = [];
     const two = value => fixed(value, 2), one = value => fixed(value, 1);
+    const bounds = (low, high, format) => `${missing(low) ? "−∞" : format(low)} to ${missing(high) ? "∞" : format(high)}`;
     shownContrasts().forEach(c => {
-      const o = c.olc_g[state.scope];
-      const add = (what, value, i, poisson, p, holm) => rows.push([c.variant, what, value, i, poisson, p, holm]);
-      add("rate ratio of frontal crashes", fixed(c.rate_ratio, 2), interval(c.rate_ratio_bootstrap, two), interval(c.rate_ratio_poisson, two), pValue(c.rate_p), pValue(c.rate_p_holm));
-      add("difference in median OLC, g", estimate(o.median_difference, 1), interval(o.median_interval, one), "", "", "");
+      const o = c.olc_g, speed = c.closing_speed_m_s, dv = c.delta_v_m_s, km_h = n => fixed(3.6 * n, 1);
+      const add = (what, value, i, bound, p, holm) => rows.push([c.variant, what, value, i, bound, p, holm]);
+      const test = q => missing(q.superiority.p) ? q.superiority.status : (q.superiority.status === "value" ? "" : "≤ ") + pValue(q.superiority.p);
+      const change = e => missing(e) ? "–" : (e.relation === "=" ? "" : `${e.relation} `) + km_h(e.value);
+      add("rate ratio of frontal crashes", fixed(c.rate_ratio, 2), interval(c.rate_ratio_interval, two), "", pValue(c.rate_p), pValue(c.rate_p_holm));
+      [["olc", 1, "g OLC"], ["delta_v", 3.6, "km/h delta-v"]].forEach(([key, factor, unit]) => {
+        const r = c.crashes_above[key];
+        add(`rate ratio of crashes above ${Number((factor * r.x).toPrecision(6))} ${unit} (${r.crashes[1]} against ${r.crashes[0]})`, fixed(r.ratio, 2), interval(r.interval, two), bounds(r.bounds[0], r.bounds[1], two), "", "");
+      });
+      add(`Cliff’s δ of OLC (${o.compared[1]} against ${o.compared[0]} vehicles)`, fixed(o.superiority.cliffs_delta, 2), interval(o.superiority.interval, two), bounds(c.olc_bounds[0].cliffs_delta, c.olc_bounds[1].cliffs_delta, two), test(o), pValue(o.p_holm));
+      add(`difference in median OLC, g (${estimate(o.medians[1], 1)} against ${estimate(o.medians[0], 1)})`, estimate(o.median_difference, 1), interval(o.median_interval, one), "", "", "");
       add("difference in mean OLC, g", estimate(o.mean_difference, 1), interval(o.mean_interval, one), "", "", "");
       add("difference in 90 % OLC, g", estimate(o.p90_difference, 1), interval(o.p90_interval, one), "", "", "");
-      add("Cliff’s δ of OLC (Mann–Whitney)", fixed(o.cliffs_delta, 2), interval(o.cliffs_delta_interval, two), "", pValue(o.mann_whitney_p), pValue(o.mann_whitney_p_holm));
-      const speed = c.closing_speed_m_s[state.scope], dv = c.delta_v_m_s[state.scope], km_h = n => fixed(3.6 * n, 1);
-      const change = e => missing(e) ? "–" : km_h(e.value);
-      add("difference in median delta-v, km/h (Mann–Whitney)", change(dv.median_difference), interval(dv.median_interval, km_h), "", pValue(dv.mann_whitney_p), pValue(dv.mann_whitney_p_holm));
-      add("difference in median closing speed, km/h (Mann–Whitney)", change(speed.median_difference), interval(speed.median_interval, km_h), "", pValue(speed.mann_whitney_p), pValue(speed.mann_whitney_p_holm));
-      add("largest distance of the distributions (KS)", fixed(o.kolmogorov_smirnov_d, 2), "", "", pValue(o.kolmogorov_smirnov_p), "");
+      add("largest distance of the distributions of OLC", fixed(o.distance, 2), "", "", missing(o.distance_p) ? "too few" : pValue(o.distance_p), pValue(o.distance_p_holm));
+      add("difference in median delta-v, km/h", change(dv.median_difference), interval(dv.median_interval, km_h), "", test(dv), pValue(dv.p_holm));
+      add("difference in median closing speed, km/h", change(speed.median_difference), interval(speed.median_interval, km_h), "", test(speed), pValue(speed.p_holm));
     });
     // Crash by crash in the counterfactual design.
     shownPairs().forEach(c => {
@@ -744,14 +774,14 @@
         const o = c.olc_change_g[key], v = c.closing_speed_change_m_s[key], km_h = n => fixed(3.6 * n, 1);
         add("change of OLC, g (Hodges–Lehmann, signed rank)", one(o.hodges_lehmann), interval(o.hodges_lehmann_interval, one), pValue(o.signed_rank_p), pValue(o.signed_rank_p_holm));
         add("mean change of OLC, g", one(o.mean), interval(o.mean_interval, one), "", "");
-        add("change of closing speed, km/h (Hodges–Lehmann, signed rank)", missing(v.hodges_lehmann) ? "–" : km_h(v.hodges_lehmann), interval(v.hodges_lehmann_interval, km_h), pValue(v.signed_rank_p), "");
+        add("change of closing speed, km/h (Hodges–Lehmann, signed rank)", missing(v.hodges_lehmann) ? "–" : km_h(v.hodges_lehmann), interval(v.hodges_lehmann_interval, km_h), pValue(v.signed_rank_p), pValue(v.signed_rank_p_holm));
       });
     });
     // Pairs have no rates: no column of theirs.
     const paired = slice().counterfactual.length > 0, without = list => paired ? list.filter((v, k) => k !== 4) : list;
     return {
-      caption: paired ? "Within pairs, over all valid ones." : `OLC over ${scopeText()}.`,
-      columns: without([{ name: "treatment", text: true }, { name: "treatment minus (over) baseline", text: true }, { name: "estimate" }, { name: "95 % bootstrap" }, { name: "95 % Poisson" }, { name: "p" }, { name: "p, Holm" }]),
+      caption: paired ? "Within pairs, over all valid ones." : "Over all frontally struck vehicles, scenarios mixed alike.",
+      columns: without([{ name: "treatment", text: true }, { name: "treatment minus (over) baseline", text: true }, { name: "estimate" }, { name: "95 % interval" }, { name: "range unknown outside" }, { name: "p" }, { name: "p, Holm" }]),
       rows: rows.map(without)
     };
   });
@@ -812,13 +842,13 @@
       line(v.variant, "mean OLC", v.olc_g[state.scope].mean_precision, v.replications);
     });
     shownContrasts().forEach(c => line(c.variant, "rate ratio", c.rate_ratio_precision, c.treatment_replications));
-    return { columns: [{ name: "variant", text: true }, { name: "figure", text: true }, { name: "replications" }, { name: "half-width reached" }, { name: "replications for ±10 %" }], rows: rows };
+    return { columns: [{ name: "variant", text: true }, { name: "figure", text: true }, { name: "replications" }, { name: "half-width reached" }, { name: "replications in all for ±10 %" }], rows: rows };
   });
 
   const exposureTable = tableSection("exposure", "exposure_and_rates", function () {
     const rows = [];
     data.scenarios.forEach(name => data.slices.filter(s => s.scenario === name && s.crash_type === null).forEach(s => s.variants.forEach(v =>
-      state.variants.has(indexOf(v.variant)) && rows.push([name, v.variant, v.replications, fixed(v.vehicle_km, 1), fixed(v.vehicle_h, 1), v.crashes, v.frontal_crashes, rate(v.frontal_crashes_per_million_km.value), fixed(v.frontal_crashes_per_million_km.dispersion, 2)]))));
+      state.variants.has(indexOf(v.variant)) && rows.push([name, v.variant, v.replications, fixed(v.vehicle_km, 1), fixed(v.vehicle_h, 1), v.crashes, v.frontal_crashes, rate(v.frontal_crashes_per_million_km.value), fixed(v.frontal_crashes_per_million_km.widening.dispersion, 2)]))));
     return {
       columns: [{ name: "scenario", text: true }, { name: "variant", text: true }, ...["replications", "vehicle-km", "vehicle-h", "crashes", "frontal", "frontal per 10⁶ km", "dispersion"].map(name => ({ name: name }))],
       rows: rows
@@ -833,7 +863,8 @@
     return list;
   }
 
-  const parameters = object => Object.keys(object || {}).map(name => `${name} = ${object[name]}`).join(", ");
+  const settings = (object, between) => Object.keys(object || {}).map(name => `${name}${between}${object[name]}`).join(", ");
+  const control = c => `${c.model || c.function} (${settings(c.parameters, " = ")}${c.equipment ? `; equipment ${settings(c.equipment, " ")}` : ""})`;
 
   function design() {
     const parent = document.getElementById("design"), study = data.study;
@@ -842,16 +873,15 @@
       ["Design", words[study.design] || study.design],
       ["Replications", `${study.replications} planned per scenario and variant${data.unfinished ? `; ${data.unfinished} not finished and not counted` : ""}`],
       ["Simulated", `${study.duration_s} s each, of these ${study.warmup_s} s warm-up not counted; step ${study.step_length_s} s`],
-      ...data.about.scenarios.map(s => [`Driver errors in ${s.name}`, JSON.parse(s.driver_errors).map(e => `${e.model} (${parameters(e.parameters)})`).join("; ") || "none"]),
-      ...data.variants.map(v => [`Variant ${v.name}`, v.functions.map(f => `${f.function} (${parameters(f.parameters)})`).join("; ") || "no function"]),
+      ...data.about.scenarios.map(s => [`Driver errors in ${s.name}`, JSON.parse(s.driver_errors).map(control).join("; ") || "none"]),
+      ...data.variants.map(v => [`Variant ${v.name}`, v.functions.map(control).join("; ") || "no function"]),
       ...data.backgrounds.map(b => [`Without driver errors, ${b.scenario}`, b.is_known ? b.text + ": the network’s own doing" : "not simulated"]),
       ["Observation", "the frontally struck vehicle; a crash with both fronts struck gives two, kept together with all crashes of their replication in every interval and test"]
     ]);
     data.backgrounds.filter(b => b.warning).forEach(b => element(parent, "p", `Mind: ${b.warning}.`, { class: "warning" }));
     document.getElementById("note-contrasts").textContent = study.design === "counterfactual" ?
-      "p by sign flips of whole replications; intervals by bootstrap over replications (BCa), given from 20 replications on. Hodges–Lehmann: the median of all means of two changes." :
-      (study.design === "paired_seeds" ? "p by sign flips of whole seed pairs" : "p by permutation of whole replications") +
-      "; intervals by bootstrap over replications (BCa), given from 20 replications on, and for the rate ratio the interval that holds if counts are Poisson. Cliff’s δ is the chance that a vehicle of the treatment has the higher OLC minus the chance that it has the lower one.";
+      "p by sign flips of whole replications; intervals by bootstrap over replications (BCa), given from 20 replications on, and of shares by counts widened by what replications scatter. Hodges–Lehmann: the median of all means of two changes. Holm’s adjustment covers every p of the table." :
+      `Rate: p by ${study.design === "paired_seeds" ? "sign flips of whole seed pairs" : "permutation of whole replications"}, interval by bootstrap over replications or, with fewer than 20 of them, of Poisson counts widened by what they scatter. Severity: Cliff’s δ, the chance that a vehicle of the treatment has the higher OLC minus the chance that it has the lower one, with a test and an interval from its own scatter over replications, which hold when one variant crashes more often; scenarios are compared within themselves. “Range unknown outside”: what is left when severities outside the validated range count as unknown. Holm’s adjustment covers every p of the comparison.`;
   }
 
   function reproduce() {
@@ -877,7 +907,7 @@
 
   // ---- filters, theme, size ----------------------------------------------------------------------------
 
-  const drawings = [rateFigure, ecdfFigure, differenceFigure, pairedFigure, scatterFigure, mapFigure, siteFigure, flowFigure, benefitFigure, corridorFigure, gallery].filter(Boolean);
+  const drawings = [rateFigure, aboveFigure, ecdfFigure, differenceFigure, pairedFigure, scatterFigure, mapFigure, siteFigure, flowFigure, benefitFigure, corridorFigure, gallery].filter(Boolean);
   function update() {
     cards();
     [exposureTable, quantileTable, contrastTable, injuryTable, precisionTable, validityTable, scorecardTable].forEach(draw => draw());

@@ -2,6 +2,8 @@
 #ifndef CALIBRATE_CSV_ROW_H
 #define CALIBRATE_CSV_ROW_H
 
+#include "core/error.h"
+
 #include <stddef.h>
 
 /* Rows of a CSV file of numbers and plain words, cut in place: no quotes. */
@@ -12,7 +14,12 @@ enum { CP_CSV_FIELDS_MAX = 32 };
  * Returns the line without its end. */
 char *cp_csv_next_line(char **rest);
 
-/* Cut a line into at most room fields; returns how many there are. */
+/* Cut a line into fields, the first room of them; returns how many there are. */
 size_t cp_csv_split(char *line, char **fields, size_t room);
+
+/* Whether a row has as many fields as the file has columns, which are at most CP_CSV_FIELDS_MAX:
+ * one more or less shifts numbers into other columns. Error: CP_BAD_INPUT with file and line. */
+CP_MUST_CHECK cp_status cp_csv_check_fields(const char *path, size_t line_number, size_t count,
+                                            size_t header, cp_error *error);
 
 #endif

@@ -52,7 +52,7 @@ cp_status cp_descent_journal_open(cp_descent_journal *journal, const char *path,
         return CP_OK;
     char *content = NULL, *rest = NULL;
     size_t size = 0;
-    cp_status status = cp_file_read(path, &content, &size, error);
+    cp_status status = cp_file_read_text(path, &content, &size, error);
     if (status != CP_OK)
         return status;
     for (char *line = strtok_r(content, "\n", &rest); status == CP_OK && line != NULL;

@@ -4,6 +4,8 @@
 #include "calibrate/fit_pulses.h"
 #include "core/file.h"
 #include "core/hash.h"
+#include "core/output_files.h"
+#include "core/safe_text.h"
 #include "core/yaml_file.h"
 
 #include <stdio.h>
@@ -293,9 +295,10 @@ static cp_status read_plausible(const cp_yaml_file *file, const yaml_plausible *
     for (int mark = 0; status == CP_OK && mark < CP_MARK_COUNT; mark++)
         status = read_mark(file, mark, bounds[mark], guard, error);
     if (status == CP_OK &&
-        (yaml->source[0] == '\0' || strlen(yaml->source) >= sizeof guard->source))
-        status = cp_yaml_fail(file, error, "plausible.source", "must have 1 to %zu characters",
-                              sizeof guard->source - 1);
+        (yaml->source[0] == '\0' || strlen(yaml->source) >= sizeof guard->source ||
+         !cp_text_is_plain(yaml->source)))
+        status = cp_yaml_fail(file, error, "plausible.source",
+                              "must be a line of 1 to %zu characters", sizeof guard->source - 1);
     snprintf(guard->source, sizeof guard->source, "%s", yaml->source);
     return status;
 }
@@ -339,6 +342,13 @@ static cp_status read_texts(const cp_yaml_file *file, const yaml_fit *yaml, cp_f
     if (yaml->fit[0] == '\0' || strlen(yaml->fit) >= sizeof fit->name)
         return cp_yaml_fail(file, error, "fit", "must have 1 to %zu characters",
                             sizeof fit->name - 1);
+    const char *const LINE[][2] = {{"fit", yaml->fit},
+                                   {"base", yaml->base},
+                                   {"reference", yaml->reference},
+                                   {"output", yaml->output}};
+    for (size_t k = 0; k < sizeof LINE / sizeof *LINE; k++)
+        if (LINE[k][1] != NULL && !cp_text_is_plain(LINE[k][1]))
+            return cp_yaml_fail(file, error, LINE[k][0], "must be a single line of plain text");
     snprintf(fit->name, sizeof fit->name, "%s", yaml->fit);
     if (yaml->description != NULL)
         snprintf(fit->description, sizeof fit->description, "%s", yaml->description);
@@ -393,9 +403,10 @@ static cp_status read_range(const cp_yaml_file *file, const yaml_range *yaml, cp
         status = cp_yaml_number(file, "calibrated.angle_max_deg", yaml->angle_max_deg, 0, 90,
                                 &range->angle_max_deg, error);
     if (status == CP_OK &&
-        (yaml->reason[0] == '\0' || strlen(yaml->reason) >= sizeof range->reason))
-        status = cp_yaml_fail(file, error, "calibrated.reason", "must have 1 to %zu characters",
-                              sizeof range->reason - 1);
+        (yaml->reason[0] == '\0' || strlen(yaml->reason) >= sizeof range->reason ||
+         !cp_text_is_plain(yaml->reason)))
+        status = cp_yaml_fail(file, error, "calibrated.reason",
+                              "must be a line of 1 to %zu characters", sizeof range->reason - 1);
     snprintf(range->reason, sizeof range->reason, "%s", yaml->reason);
     return status;
 }
@@ -425,16 +436,87 @@ static cp_status check_folds(const cp_yaml_file *file, const char *key, size_t f
                         fit->reference.count, folds);
 }
 
-// The files a fit file names, as seen from its folder.
-static cp_status load_named_files(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
-                                  cp_error *error)
+// Remember a file that is read; name: as the fit file has it.
+static cp_status add_input(const cp_yaml_file *file, const char *name, cp_fit *fit, cp_error *error)
 {
-    char *base_path = cp_file_beside(file->path, yaml->base);
-    fit->output_path = cp_file_beside(file->path, yaml->output);
-    cp_status status = base_path != NULL && fit->output_path != NULL
-                           ? cp_vehicle_model_load(base_path, &fit->base, error)
-                           : cp_fail_memory(error, file->path);
-    free(base_path);
+    char **larger = realloc(fit->input_path, (fit->input_count + 1) * sizeof *larger);
+    if (larger == NULL)
+        return cp_fail_memory(error, file->path);
+    fit->input_path = larger;
+    larger[fit->input_count] = cp_file_beside(file->path, name);
+    if (larger[fit->input_count] == NULL)
+        return cp_fail_memory(error, file->path);
+    fit->input_count++;
+    return CP_OK;
+}
+
+static cp_status list_inputs(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+                             cp_error *error)
+{
+    // cp_file_beside takes an absolute path as it is; the fit file's own is seen from here.
+    const char *slash = strrchr(file->path, '/');
+    cp_status status = add_input(file, slash != NULL ? slash + 1 : file->path, fit, error);
+    if (status == CP_OK)
+        status = add_input(file, yaml->base, fit, error);
+    if (status == CP_OK && yaml->reference != NULL)
+        status = add_input(file, yaml->reference, fit, error);
+    for (unsigned k = 0; status == CP_OK && k < yaml->pulses_count; k++) {
+        const cp_yaml_pulse *pulse = &yaml->pulses[k];
+        const char *name = pulse->ev5 != NULL ? pulse->ev5 : pulse->file;
+        if (name != NULL)
+            status = add_input(file, name, fit, error);
+    }
+    return status;
+}
+
+// Where the file's own output: leads, or the output_path that was given instead.
+static cp_status read_output(const cp_yaml_file *file, const yaml_fit *yaml,
+                             const char *output_path, cp_fit *fit, cp_error *error)
+{
+    cp_error own = {0};
+    const char *ending = strrchr(output_path != NULL ? output_path : yaml->output, '.');
+    bool is_yaml = ending != NULL && (strcmp(ending, ".yaml") == 0 || strcmp(ending, ".yml") == 0);
+    if (!is_yaml && output_path != NULL)
+        return cp_fail(error, CP_BAD_INPUT, "%s: the fitted vehicle file must end in .yaml",
+                       output_path);
+    if (!is_yaml)
+        return cp_yaml_fail(file, error, "output", "must end in .yaml, found '%s'", yaml->output);
+    if (output_path == NULL && cp_output_file_check_below(file->path, yaml->output, &own) != CP_OK)
+        return own.status == CP_NO_MEMORY
+                   ? cp_fail_memory(error, file->path)
+                   : cp_yaml_fail(file, error, "output",
+                                  "%s; 'calibrate --output FILE' writes to another place",
+                                  own.text);
+    fit->output_path =
+        output_path != NULL ? strdup(output_path) : cp_file_beside(file->path, yaml->output);
+    return fit->output_path != NULL ? CP_OK : cp_fail_memory(error, file->path);
+}
+
+static cp_status check_outputs(const cp_fit *fit, cp_error *error)
+{
+    static const char *const ENDING[] = {"", ".fit.md", ".fit.state"};
+    enum { COUNT = sizeof ENDING / sizeof *ENDING };
+    char path[COUNT][4096];
+    const char *outputs[COUNT];
+    for (int k = 0; k < COUNT; k++) {
+        snprintf(path[k], sizeof path[k], "%s%s", fit->output_path, ENDING[k]);
+        outputs[k] = path[k];
+    }
+    return cp_output_files_check(outputs, COUNT, (const char *const *)fit->input_path,
+                                 fit->input_count, error);
+}
+
+// The files a fit file names, as seen from its folder.
+static cp_status load_named_files(const cp_yaml_file *file, const yaml_fit *yaml,
+                                  const char *output_path, cp_fit *fit, cp_error *error)
+{
+    cp_status status = list_inputs(file, yaml, fit, error);
+    if (status == CP_OK)
+        status = read_output(file, yaml, output_path, fit, error);
+    if (status == CP_OK)
+        status = check_outputs(fit, error);
+    if (status == CP_OK) // the second of the inputs
+        status = cp_vehicle_model_load(fit->input_path[1], &fit->base, error);
     if (status != CP_OK)
         return status;
     return fit->objective == CP_FIT_PULSE
@@ -442,7 +524,7 @@ static cp_status load_named_files(const cp_yaml_file *file, const yaml_fit *yaml
                : load_reference(file, yaml, fit, error);
 }
 
-cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error)
+cp_status cp_fit_load(const char *path, const char *output_path, cp_fit *fit, cp_error *error)
 {
     *fit = (cp_fit){0};
     cp_yaml_file file = {0};
@@ -467,7 +549,7 @@ cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error)
     if (status == CP_OK)
         status = check_drawn_starts(&file, fit, error);
     if (status == CP_OK)
-        status = load_named_files(&file, yaml, fit, error);
+        status = load_named_files(&file, yaml, output_path, fit, error);
     if (status == CP_OK)
         status = check_folds(&file, "folds", fit->folds, fit, error);
     if (status == CP_OK)
@@ -488,5 +570,8 @@ void cp_fit_destroy(cp_fit *fit)
     free(fit->pulses);
     free(fit->reference_path);
     free(fit->output_path);
+    for (size_t k = 0; k < fit->input_count; k++)
+        free(fit->input_path[k]);
+    free(fit->input_path);
     *fit = (cp_fit){0};
 }

@@ -40,6 +40,8 @@ typedef struct cp_fit {
     size_t pulse_count;
     cp_reference_pulse *pulses; /* owned; none by objective olc */
     cp_fit_range range;
+    size_t input_count;
+    char **input_path;  /* owned: every file the fit reads, as it is found from here */
     char *output_path;  /* owned: fitted vehicle file; the report stands beside it as .fit.md,
                            the state of an unfinished fit as .fit.state */
     char algorithm[16]; /* "de", "sade" or "cmaes"; default "de" */
@@ -70,8 +72,12 @@ typedef struct cp_fit {
     cp_unknown unknown[CP_UNKNOWNS_MAX];
 } cp_fit;
 
-/* Errors: CP_BAD_INPUT with file, line and field. The caller destroys. */
-CP_MUST_CHECK cp_status cp_fit_load(const char *path, cp_fit *fit, cp_error *error);
+/* output_path: where to, NULL: where the file says, which must lie in its own folder or below. What
+ * will be written is looked at (output_files.h), so that a long fit does not end in vain. Errors:
+ * CP_BAD_INPUT with file, line and field; CP_IO_FAILED where nothing can be written. The caller
+ * destroys. */
+CP_MUST_CHECK cp_status cp_fit_load(const char *path, const char *output_path, cp_fit *fit,
+                                    cp_error *error);
 void cp_fit_destroy(cp_fit *fit);
 
 /* Whether its starts are drawn around the base (drawn_starts.h), not found by global searches. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/calibration.h"
 #include "core/file.h"
+#include "core/safe_text.h"
 #include "core/units.h"
 
 #include <math.h>
@@ -67,8 +68,10 @@ static void write_misfit(FILE *file, const cp_fit *fit, const cp_calibration *ca
     for (size_t k = 0; k < fit->pulse_count && k < MISFITS_MAX; k++) {
         const cp_reference_pulse *pulse = &fit->pulses[k];
         const cp_pulse_error *found = &calibration->work.pulse_error[k];
-        fprintf(file, "# %s: mean abs. error of v_x %.3f m/s over 0 to %.0f ms;\n", pulse->source,
-                found->vx_m_s, 1e3 * pulse->until_s);
+        fputs("# ", file);
+        cp_text_print(file, pulse->source, "");
+        fprintf(file, ": mean abs. error of v_x %.3f m/s over 0 to %.0f ms;\n", found->vx_m_s,
+                1e3 * pulse->until_s);
         fprintf(file,
                 "#   OLC %.2f g (reference %.2f), v = 0 at %.1f ms (%.1f), peak %.1f g (%.1f), "
                 "crush %.0f mm (%.0f)\n",
@@ -106,6 +109,13 @@ static void write_way(FILE *file, const cp_fit *fit)
     fprintf(file, "; from the best Nelder-Mead (%zu evaluations).\n", fit->local_evaluations);
 }
 
+static void write_source(FILE *file, const char *name)
+{
+    fprintf(file, "source: ");
+    cp_text_write_yaml(file, name);
+    fprintf(file, "}\n");
+}
+
 static void write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
 {
     const cp_vehicle_model *model = &calibration->model;
@@ -115,9 +125,14 @@ static void write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *c
     fprintf(file, "# ");
     write_way(file, fit);
     write_misfit(file, fit, calibration);
-    fprintf(file, "vehicle: %s\n", fit->name);
-    if (fit->description[0] != '\0')
-        fprintf(file, "description: \"%s\"\n", fit->description);
+    fprintf(file, "vehicle: ");
+    cp_text_write_yaml(file, fit->name);
+    fputc('\n', file);
+    if (fit->description[0] != '\0') {
+        fprintf(file, "description: ");
+        cp_text_write_yaml(file, fit->description);
+        fputc('\n', file);
+    }
     write_range(file, fit);
     write_barrier(file, &model->barrier);
     fprintf(file, "parameters:\n");
@@ -129,7 +144,7 @@ static void write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *c
         if (unknown != NULL)
             fprintf(file, "source: fitted within %g to %g}\n", unknown->min, unknown->max);
         else
-            fprintf(file, "source: %s}\n", fit->base.name);
+            write_source(file, fit->base.name);
     }
 }
 
@@ -227,7 +242,9 @@ static void write_pulses(FILE *file, const cp_fit *fit, const cp_calibration *ca
     for (size_t k = 0; k < fit->pulse_count; k++) {
         const cp_reference_pulse *pulse = &fit->pulses[k];
         const cp_pulse_error *found = &calibration->work.pulse_error[k];
-        fprintf(file, "| %s | %.4g | %g | %g | %.0f |", pulse->source, pulse->condition.speed_km_h,
+        fputs("| ", file);
+        cp_text_print(file, pulse->source, "");
+        fprintf(file, " | %.4g | %g | %g | %.0f |", pulse->condition.speed_km_h,
                 pulse->condition.offset_mm, pulse->condition.angle_deg, 1e3 * pulse->until_s);
         write_mark(file, found->total, 1.0, 3);
         write_mark(file, found->ax_g, 1.0, 3);

@@ -16,32 +16,48 @@ static const char *const COLUMN_NAME[COLUMN_COUNT] = {"speed_kmh", "offset_mm", 
 static const double SMALLEST[COLUMN_COUNT] = {1.0, -3000.0, -90.0, 0.0};
 static const double LARGEST[COLUMN_COUNT] = {200.0, 3000.0, 90.0, 200.0};
 
-static cp_status find_columns(const char *path, char *header, size_t place[COLUMN_COUNT],
-                              cp_error *error)
+// The columns of a file: how many, and where those stand that are read.
+typedef struct columns {
+    size_t count;
+    size_t place[COLUMN_COUNT];
+} columns;
+
+static cp_status find_columns(const char *path, char *header, columns *found, cp_error *error)
 {
     char *fields[CP_CSV_FIELDS_MAX];
-    size_t count = cp_csv_split(header, fields, CP_CSV_FIELDS_MAX);
+    size_t *place = found->place;
+    found->count = cp_csv_split(header, fields, CP_CSV_FIELDS_MAX);
+    cp_status status = cp_csv_check_fields(path, 1, found->count, found->count, error);
+    if (status != CP_OK)
+        return status;
     for (int c = 0; c < COLUMN_COUNT; c++) {
         place[c] = CP_CSV_FIELDS_MAX;
-        for (size_t k = 0; k < count; k++)
-            if (strcmp(fields[k], COLUMN_NAME[c]) == 0 ||
-                (c == COLUMN_OLC && strcmp(fields[k], "olc_g") == 0))
-                place[c] = k;
+        for (size_t k = 0; k < found->count; k++) {
+            if (strcmp(fields[k], COLUMN_NAME[c]) != 0 &&
+                (c != COLUMN_OLC || strcmp(fields[k], "olc_g") != 0))
+                continue;
+            if (place[c] != CP_CSV_FIELDS_MAX)
+                return cp_fail(error, CP_BAD_INPUT, "%s:1: column %s is given twice", path,
+                               COLUMN_NAME[c]);
+            place[c] = k;
+        }
         if (place[c] == CP_CSV_FIELDS_MAX)
             return cp_fail(error, CP_BAD_INPUT, "%s:1: column %s is missing", path, COLUMN_NAME[c]);
     }
     return CP_OK;
 }
 
-static cp_status read_case(const char *path, size_t line_number, char *line,
-                           const size_t place[COLUMN_COUNT], cp_reference_case *row,
-                           cp_error *error)
+static cp_status read_case(const char *path, size_t line_number, char *line, const columns *found,
+                           cp_reference_case *row, cp_error *error)
 {
     char *fields[CP_CSV_FIELDS_MAX];
     size_t count = cp_csv_split(line, fields, CP_CSV_FIELDS_MAX);
     double value[COLUMN_COUNT];
+    cp_status status = cp_csv_check_fields(path, line_number, count, found->count, error);
+    if (status != CP_OK)
+        return status;
     for (int c = 0; c < COLUMN_COUNT; c++) {
-        const char *text = place[c] < count ? fields[place[c]] : "";
+        const char *text = fields[found->place[c]];
         if (!cp_parse_number(text, &value[c]) || value[c] < SMALLEST[c] || value[c] > LARGEST[c])
             return cp_fail(error, CP_BAD_INPUT,
                            "%s:%zu: %s must be a number between %g and %g, found '%s'", path,
@@ -61,15 +77,16 @@ static cp_status read_lines(const char *path, char *content, cp_reference *refer
     reference->cases = calloc(lines, sizeof *reference->cases);
     if (reference->cases == NULL)
         return cp_fail_memory(error, path);
-    size_t place[COLUMN_COUNT] = {0}, number = 0;
+    columns found = {0};
+    size_t number = 0;
     for (char *rest = content; rest != NULL && *rest != '\0';) {
         char *line = cp_csv_next_line(&rest);
         cp_status status = CP_OK;
         if (++number == 1)
-            status = find_columns(path, line, place, error);
+            status = find_columns(path, line, &found, error);
         else if (line[strspn(line, " \t\r")] != '\0')
             status =
-                read_case(path, number, line, place, &reference->cases[reference->count++], error);
+                read_case(path, number, line, &found, &reference->cases[reference->count++], error);
         if (status != CP_OK)
             return status;
     }
@@ -83,7 +100,7 @@ cp_status cp_reference_load(const char *path, cp_reference *reference, cp_error 
     *reference = (cp_reference){0};
     char *content = NULL;
     size_t size = 0;
-    cp_status status = cp_file_read(path, &content, &size, error);
+    cp_status status = cp_file_read_text(path, &content, &size, error);
     if (status != CP_OK)
         return status;
     cp_hash_bytes(content, size, reference->hash);

@@ -188,6 +188,7 @@ static const char *const COLUMN_NAME[COLUMN_COUNT] = {"time_s", "ax_m_s2", "vx_m
 
 // Places of the columns in the file's rows; CP_CSV_FIELDS_MAX: not there.
 typedef struct columns {
+    size_t count;
     size_t place[COLUMN_COUNT];
     size_t vehicle;
 } columns;
@@ -195,11 +196,18 @@ typedef struct columns {
 static cp_status find_columns(const char *path, char *header, columns *found, cp_error *error)
 {
     char *fields[CP_CSV_FIELDS_MAX];
-    size_t count = cp_csv_split(header, fields, CP_CSV_FIELDS_MAX);
+    found->count = cp_csv_split(header, fields, CP_CSV_FIELDS_MAX);
+    cp_status status = cp_csv_check_fields(path, 1, found->count, found->count, error);
+    if (status != CP_OK)
+        return status;
     found->vehicle = CP_CSV_FIELDS_MAX;
     for (int c = 0; c < COLUMN_COUNT; c++)
         found->place[c] = CP_CSV_FIELDS_MAX;
-    for (size_t k = 0; k < count; k++) {
+    for (size_t k = 0; k < found->count; k++) {
+        for (size_t other = 0; other < k; other++)
+            if (strcmp(fields[k], fields[other]) == 0)
+                return cp_fail(error, CP_BAD_INPUT, "%s:1: column %s is given twice", path,
+                               fields[k]);
         if (strcmp(fields[k], "vehicle") == 0)
             found->vehicle = k;
         for (int c = 0; c < COLUMN_COUNT; c++)
@@ -218,12 +226,15 @@ static cp_status read_row(const char *path, size_t line_number, char *line, cons
 {
     char *fields[CP_CSV_FIELDS_MAX];
     size_t count = cp_csv_split(line, fields, CP_CSV_FIELDS_MAX);
+    cp_status status = cp_csv_check_fields(path, line_number, count, found->count, error);
+    if (status != CP_OK)
+        return status;
     *skip = found->vehicle < count && strcmp(fields[found->vehicle], "a") != 0;
     for (int c = 0; c < COLUMN_COUNT && !*skip; c++) {
         value[c] = 0.0;
         if (found->place[c] == CP_CSV_FIELDS_MAX)
             continue;
-        const char *text = found->place[c] < count ? fields[found->place[c]] : "";
+        const char *text = fields[found->place[c]];
         if (!cp_parse_number(text, &value[c]))
             return cp_fail(error, CP_BAD_INPUT, "%s:%zu: %s must be a number, found '%s'", path,
                            line_number, COLUMN_NAME[c], text);
@@ -295,7 +306,7 @@ static cp_status load_file(const cp_pulse_source *source, cp_reference_pulse *pu
                        "%s: is a folder; the pulse of a test in it needs the numbers of its "
                        "channels",
                        source->path);
-    cp_status status = cp_file_read(source->path, &content, &size, error);
+    cp_status status = cp_file_read_text(source->path, &content, &size, error);
     if (status != CP_OK)
         return status;
     cp_hash_bytes(content, size, pulse->hash);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/args.h"
 
+#include "core/log.h"
 #include "core/status.h"
 
 #include <errno.h>
@@ -60,7 +61,8 @@ void cp_args_parse(const struct argp *argp, int argc, char **argv, void *input)
     error_t failure = argp_parse(argp, argc, argv, 0, NULL, input);
     argv[0] = first;
     if (failure != 0) {
-        fprintf(stderr, "%s: %s\n", name, strerror(failure));
-        exit(argp_err_exit_status);
+        cp_status status = failure == ENOMEM ? CP_NO_MEMORY : CP_BAD_INPUT;
+        cp_log_error("command line: %s", strerror(failure));
+        exit(cp_status_exit_code(status));
     }
 }

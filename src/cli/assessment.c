@@ -2,6 +2,7 @@
 #include "cli/assessment.h"
 
 #include "core/log.h"
+#include "impact/confirmation.h"
 #include "impact/recorded_contact.h"
 #include "run/crash_record.h"
 
@@ -318,6 +319,36 @@ static cp_status facts_of_description(const cp_listed_configuration *row, const 
     return CP_OK;
 }
 
+// Whether the two really strike each other, by the rule that contacts of a study are confirmed by;
+// what does not is told.
+static bool is_struck(const cp_listed_configuration *row, const char *list_path,
+                      const cp_crash_facts *facts, const cp_vehicle_model *by_role[2])
+{
+    cp_touching_body body[2];
+    cp_touch touch = {facts->contact_m,
+                      {facts->configuration.side[0], facts->configuration.side[1]}};
+    for (int role = 0; role < 2; role++) {
+        const cp_body_state *state = &facts->configuration.vehicle[role];
+        const cp_vehicle_model *model = by_role[role];
+        cp_vec2 to_front_m = cp_vec2_scale(cp_vec2_heading(state->yaw_rad), model->cg_to_front_m);
+        cp_vec2 to_centre_m = cp_vec2_scale(cp_vec2_heading(state->yaw_rad),
+                                            model->cg_to_front_m - 0.5 * model->length_m);
+        body[role] =
+            (cp_touching_body){.rectangle = {cp_vec2_add(state->cog_m, to_centre_m), state->yaw_rad,
+                                             model->length_m, model->width_m},
+                               .front_velocity_m_s = cp_point_velocity(
+                                   state->velocity_m_s, state->yaw_rate_rad_s, to_front_m),
+                               .yaw_rate_rad_s = state->yaw_rate_rad_s};
+    }
+    if (cp_contact_is_crash(body, &touch))
+        return true;
+    cp_log_warning("%s:%zu: '%s' is a graze: the front edges meet over %.2f m, and the cars do not "
+                   "go %g m into each other",
+                   list_path, row->line, row->id, fmax(cp_front_edges_overlap_m(body), 0.0),
+                   CP_CONFIRMATION_DEPTH_M);
+    return false;
+}
+
 // The vehicle that a row names, else the default.
 static cp_status choose_listed(const cp_listed_configuration *row, int v, const char *list_path,
                                const cp_fleet *fleet, cp_fleet_choice *choice, cp_error *error)
@@ -333,7 +364,8 @@ static cp_status choose_listed(const cp_listed_configuration *row, int v, const 
 }
 
 static cp_status assess_row(const cp_configuration_list *list, size_t number, const char *list_path,
-                            const cp_fleet *fleet, cp_result_rows *results, cp_error *error)
+                            const cp_fleet *fleet, cp_result_rows *results,
+                            cp_assessment_count *count, cp_error *error)
 {
     const cp_listed_configuration *row = &list->row[number];
     const char *type[2];
@@ -368,6 +400,11 @@ static cp_status assess_row(const cp_configuration_list *list, size_t number, co
         facts.length_m[role] = cars[role].model.length_m;
         facts.width_m[role] = cars[role].model.width_m;
     }
+    const cp_vehicle_model *by_role[2] = {&cars[0].model, &cars[1].model};
+    if (!is_struck(row, list_path, &facts, by_role)) {
+        count->filtered++;
+        return CP_OK;
+    }
     cp_crash_row *crash = cp_result_rows_add_crash(results);
     return crash != NULL ? cp_crash_record_facts(&facts, &names, cars, crash, error)
                          : cp_fail_memory(error, "crash");
@@ -380,7 +417,7 @@ cp_status cp_assess_configurations(const cp_configuration_list *list, const char
     *count = (cp_assessment_count){.listed = list->count};
     cp_status status = CP_OK;
     for (size_t k = 0; status == CP_OK && k < list->count; k++)
-        status = assess_row(list, k, list_path, fleet, results, error);
+        status = assess_row(list, k, list_path, fleet, results, count, error);
     count->crashes = results->crash_count;
     return status;
 }

@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "run/background_request.h"
 #include "study/study_file.h"
+#include "study/sumo_configuration.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -144,6 +145,25 @@ static cp_status run_one(const cp_background_request *request, cp_table *table, 
     return status;
 }
 
+// Options of a .sumocfg: refused or told, and how long at most it runs unless asked otherwise.
+static cp_status look_at_options(const arguments *a, cp_background_request *request,
+                                 cp_error *error)
+{
+    cp_sumo_configuration configuration = {0};
+    cp_status status = cp_sumo_configuration_read(a->path, NULL, 0, &configuration, error);
+    if (status == CP_OK) {
+        double length_s = cp_sumo_configuration_length_s(&configuration);
+        if (isnan(a->duration_s) && length_s > 0.0)
+            request->duration_s = fmin(request->duration_s, length_s);
+        status = cp_sumo_configuration_check(&configuration, request->duration_s, error);
+    }
+    if (status == CP_OK)
+        cp_sumo_configuration_tell(&configuration);
+    cp_sumo_configuration_destroy(&configuration);
+    request->time_limit_s = fmax(600.0, 10.0 * request->duration_s);
+    return status;
+}
+
 static cp_status run_study(const arguments *a, cp_background_request request, cp_table *table,
                            cp_error *error)
 {
@@ -151,6 +171,7 @@ static cp_status run_study(const arguments *a, cp_background_request request, cp
     cp_status status = cp_study_load(a->path, &study, error);
     if (status != CP_OK)
         return status;
+    status = cp_study_tell_options(&study, error);
     for (size_t k = 0; k < study.scenario_count && status == CP_OK; k++) {
         request.scenario = study.scenarios[k].name;
         status = run_one(&request, table, error);
@@ -177,8 +198,12 @@ cp_status cmd_background(int argc, char **argv, cp_error *error)
                                      .db_path = a.db_path};
     cp_table table = {0};
     cp_table_begin(&table, COLUMN, sizeof COLUMN / sizeof *COLUMN);
-    cp_status status =
-        is_study(a.path) ? run_study(&a, request, &table, error) : run_one(&request, &table, error);
+    cp_status status = CP_OK;
+    if (!is_study(a.path))
+        status = look_at_options(&a, &request, error);
+    if (status == CP_OK)
+        status = is_study(a.path) ? run_study(&a, request, &table, error)
+                                  : run_one(&request, &table, error);
     if (status == CP_OK)
         status = cp_table_print(&table, a.format, stdout, error);
     cp_table_destroy(&table);

@@ -6,17 +6,34 @@
 
 #include <stdio.h>
 
+typedef struct arguments {
+    const char *fit_path;
+    const char *output_path;
+} arguments;
+
+static const struct argp_option OPTIONS[] = {
+    {"output", 'o', "FILE.yaml", 0,
+     "write the fitted vehicle file here, not where the fit file says; its own place must be in "
+     "its "
+     "folder or below",
+     0},
+    {0},
+};
+
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
-    const char **path = state->input;
+    arguments *a = state->input;
     switch (key) {
+    case 'o':
+        a->output_path = argument;
+        return 0;
     case ARGP_KEY_ARG:
-        if (*path != NULL)
+        if (a->fit_path != NULL)
             argp_error(state, "one fit at a time, found '%s' too", argument);
-        *path = argument;
+        a->fit_path = argument;
         return 0;
     case ARGP_KEY_END:
-        if (*path == NULL)
+        if (a->fit_path == NULL)
             argp_error(state, "which fit? FIT.yaml is missing");
         return 0;
     default:
@@ -25,6 +42,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp ARGP = {
+    .options = OPTIONS,
     .parser = parse,
     .args_doc = "FIT.yaml",
     .doc =
@@ -40,12 +58,12 @@ static const struct argp ARGP = {
 
 cp_status cmd_calibrate(int argc, char **argv, cp_error *error)
 {
-    const char *path = NULL;
-    cp_args_parse(&ARGP, argc, argv, &path);
+    arguments a = {0};
+    cp_args_parse(&ARGP, argc, argv, &a);
 
     cp_fit fit;
     cp_calibration calibration = {0};
-    cp_status status = cp_fit_load(path, &fit, error);
+    cp_status status = cp_fit_load(a.fit_path, a.output_path, &fit, error);
     if (status != CP_OK)
         return status;
     status = cp_crash_library_begin(error);

@@ -10,6 +10,7 @@
 #include "report/quantity.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 typedef struct arguments {
@@ -18,11 +19,12 @@ typedef struct arguments {
     const char *scenario;
     const char *by;
     const char *where;
+    double above[CP_EXCEEDED_COUNT]; /* OLC in g, delta-v in m/s */
     bool no_store;
     cp_format format;
 } arguments;
 
-enum { KEY_NO_STORE = 256 };
+enum { KEY_NO_STORE = 256, KEY_ABOVE_OLC, KEY_ABOVE_DELTA_V };
 
 static const struct argp_option OPTIONS[] = {
     {"baseline", 'b', "VARIANT", 0, "compare with this variant (default: the study's baseline)", 0},
@@ -34,6 +36,9 @@ static const struct argp_option OPTIONS[] = {
     {"where", 'w', "SQL", 0,
      "only vehicles for which this holds, over columns of crash_vehicle_list; exposure stays whole",
      0},
+    {"above-olc", KEY_ABOVE_OLC, "G", 0,
+     "how often crashes above this OLC happen, g (default 15); the report has the curve", 0},
+    {"above-delta-v", KEY_ABOVE_DELTA_V, "KM/H", 0, "the same above this delta-v (default 30)", 0},
     {"no-store", KEY_NO_STORE, NULL, 0, "leave the tables comparison and comparison_figure alone",
      0},
     {0},
@@ -57,6 +62,13 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case 'w':
         a->where = argument;
+        return 0;
+    case KEY_ABOVE_OLC:
+        a->above[CP_EXCEEDED_OLC] = cp_args_number(state, "--above-olc", argument, 0.0, 200.0, "g");
+        return 0;
+    case KEY_ABOVE_DELTA_V:
+        a->above[CP_EXCEEDED_DELTA_V] =
+            cp_args_number(state, "--above-delta-v", argument, 0.0, 400.0, "km/h") / 3.6;
         return 0;
     case KEY_NO_STORE:
         a->no_store = true;
@@ -86,9 +98,14 @@ static const struct argp ARGP = {
            "frontally struck vehicles) and what injuries that leads to expect, each treatment "
            "against the baseline; for counterfactual studies what became of each baseline crash."
            "\v"
-           "Intervals by bootstrap and p-values by permutation take whole replications, because "
-           "crashes of one replication are not independent; under 20 replications there is no "
-           "bootstrap interval. Rates are conditional on the study's driver errors. OLC describes "
+           "Intervals and tests take whole replications, because crashes of one replication are "
+           "not independent. Rates have two intervals: by bootstrap over replications, from 20 of "
+           "them on, and of Poisson counts widened by what replications differ. Severities are "
+           "compared at the same mix of scenarios, by a test that holds when one variant crashes "
+           "more often; where crashes are too few for an interval or a test the reason stands in "
+           "its place. What lies outside the surrogate's validated range counts with its "
+           "extrapolated severity, and as unknown in the bounds. Rates are conditional on the "
+           "study's driver errors. OLC describes "
            "the crash pulse of a car; injuries come from the table risk_function, which is yours "
            "to edit. The figures are also written to the tables comparison and "
            "comparison_figure.\n\n"
@@ -227,7 +244,9 @@ static cp_status store(job *j, cp_error *error)
 cp_status cmd_compare(int argc, char **argv, cp_error *error)
 {
     job j = {.options = cp_comparison_options_default()};
+    memcpy(j.a.above, j.options.above, sizeof j.a.above);
     cp_args_parse(&ARGP, argc, argv, &j.a);
+    memcpy(j.options.above, j.a.above, sizeof j.a.above);
 
     // A database that cannot be written can be compared all the same.
     bool stored = !j.a.no_store;

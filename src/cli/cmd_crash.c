@@ -4,6 +4,7 @@
 #include "cli/crash_again.h"
 #include "cli/crash_output.h"
 #include "cli/crash_samples.h"
+#include "core/output_files.h"
 #include "core/units.h"
 #include "report/animation.h"
 
@@ -364,7 +365,13 @@ cp_status cmd_crash(int argc, char **argv, cp_error *error)
                    .crash_id = -1};
     cp_args_parse(&ARGP, argc, argv, &a);
 
-    cp_status status = cp_crash_library_begin(error);
+    const char *const outputs[] = {a.pulse_path, a.animation_path};
+    const char *const inputs[] = {a.vehicle_path, a.opponent_path, a.overlay_vehicle_path,
+                                  a.overlay_opponent_path, a.from_path};
+    cp_status status = cp_output_files_check(outputs, sizeof outputs / sizeof *outputs, inputs,
+                                             sizeof inputs / sizeof *inputs, error);
+    if (status == CP_OK)
+        status = cp_crash_library_begin(error);
     if (status != CP_OK)
         return status;
     status = a.from_path ? simulate_again(&a, error) : simulate_described(&a, error);

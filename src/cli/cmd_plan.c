@@ -2,6 +2,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "run/fleet.h"
+#include "study/controls_text.h"
 #include "study/plan.h"
 
 #include <stdbool.h>
@@ -56,7 +57,8 @@ static const struct argp ARGP = {
     .parser = parse,
     .args_doc = "STUDY.yaml",
     .doc = "Show what 'crashpulse run' would do: every scenario with every variant, those of a "
-           "sweep included, and how many replications of each. Runs nothing, changes nothing."
+           "sweep included, how many replications of each, and the parameters of every driver "
+           "error and function, defaults included. Runs nothing, changes nothing."
            "\v"
            "With --db, what of it is done already and what is new. Exit code 2, and the "
            "difference, when the study file contradicts results in the database.\n\n"
@@ -172,8 +174,11 @@ static cp_status add_groups(const planned *p, cp_format format, cp_table *table,
             cp_table_integer(table, (int64_t)here[0]);
             for (size_t state = CP_PLANNED_NEW; p->state != NULL && state < STATES; state++)
                 cp_table_integer(table, (int64_t)here[1 + state]);
-            if (format == CP_FORMAT_JSON)
-                cp_table_json(table, swept_json(&p->study.scenarios[s], &p->study.variants[v]));
+            if (format != CP_FORMAT_JSON)
+                continue;
+            cp_table_json(table, swept_json(&p->study.scenarios[s], &p->study.variants[v]));
+            cp_table_json(table, json_loads(p->rows.scenario[s].driver_errors, 0, NULL));
+            cp_table_json(table, json_loads(p->rows.variant[v].functions, 0, NULL));
         }
     }
     free(count);
@@ -184,7 +189,8 @@ static cp_status print_plan(const planned *p, const arguments *a, cp_error *erro
 {
     static const char *const EACH_COLUMN[] = {"scenario", "variant", "replication",
                                               "seed",     "id",      "state"};
-    const char *group_column[4 + STATES] = {"scenario", "variant", "replications"};
+    static const char *const JSON_COLUMN[] = {"swept", "driver_errors", "functions"};
+    const char *group_column[6 + STATES] = {"scenario", "variant", "replications"};
     size_t columns = 3;
     cp_table table = {0};
     cp_status status = CP_OK;
@@ -194,8 +200,8 @@ static cp_status print_plan(const planned *p, const arguments *a, cp_error *erro
     } else {
         for (size_t state = CP_PLANNED_NEW; p->state != NULL && state < STATES; state++)
             group_column[columns++] = STATE_TEXT[state];
-        if (a->format == CP_FORMAT_JSON)
-            group_column[columns++] = "swept";
+        for (size_t k = 0; a->format == CP_FORMAT_JSON && k < 3; k++)
+            group_column[columns++] = JSON_COLUMN[k];
         cp_table_begin(&table, group_column, columns);
         status = add_groups(p, a->format, &table, error);
     }
@@ -208,6 +214,8 @@ static cp_status print_plan(const planned *p, const arguments *a, cp_error *erro
 static void print_summary(const planned *p)
 {
     size_t total = p->rows.replication_count, done = 0;
+    fputc('\n', stdout);
+    cp_controls_text_study(&p->study, "", stdout);
     printf("\n%zu replication%s of %g s, %.3g h of simulated traffic", total, total == 1 ? "" : "s",
            p->study.duration_s, (double)total * p->study.duration_s / 3600.0);
     for (size_t k = 0; p->state != NULL && k < total; k++)
@@ -239,6 +247,8 @@ cp_status cmd_plan(int argc, char **argv, cp_error *error)
         agrees = look_into_database(a.db_path, &p, &contradiction);
     if (status == CP_OK)
         status = print_plan(&p, &a, error);
+    if (status == CP_OK)
+        status = cp_study_tell_options(&p.study, error);
     if (status == CP_OK && a.format == CP_FORMAT_TABLE)
         print_summary(&p);
     release(&p);

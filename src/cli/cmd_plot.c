@@ -2,6 +2,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/log.h"
+#include "core/output_files.h"
 #include "report/grouping.h"
 #include "report/plot.h"
 
@@ -25,7 +26,10 @@ static const struct argp_option OPTIONS[] = {
     {"baseline", 'b', "VARIANT", 0, "compare with this variant (default: the study's baseline)", 0},
     {"scenario", 's', "NAME", 0, "crashes and exposure of this scenario only", 0},
     {"where", 'w', "SQL", 0, "only vehicles for which this holds, as in compare", 0},
-    {"inside", KEY_INSIDE, NULL, 0, "severity of vehicles inside the validated range only", 0},
+    {"inside", KEY_INSIDE, NULL, 0,
+     "describe vehicles inside the validated range only (olc, severity, map, sites, corridor); "
+     "differences and benefits are of all",
+     0},
     {0},
 };
 
@@ -45,8 +49,8 @@ static void read_kind(arguments *a, const char *text, struct argp_state *state)
         }
     }
     argp_error(state,
-               "KIND must be rates, olc, difference, severity, map, sites, outcomes, benefit or "
-               "corridor, found '%s'",
+               "KIND must be rates, olc, difference, severity, map, sites, outcomes, benefit, "
+               "corridor, above-olc or above-delta-v, found '%s'",
                text);
 }
 
@@ -118,7 +122,10 @@ cp_status cmd_plot(int argc, char **argv, cp_error *error)
     size_t baseline = 0;
     cp_comparison_options options = cp_comparison_options_default();
     options.permutations = 0; // no figure shows a p-value
-    cp_status status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+    cp_status status =
+        cp_output_files_check(&a.output_path, 1, (const char *const[]){a.db_path}, 1, error);
+    if (status == CP_OK)
+        status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
     if (status == CP_OK)
         status = cp_study_data_read(store, &data, error);
     if (status == CP_OK)

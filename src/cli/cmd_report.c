@@ -2,6 +2,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/log.h"
+#include "core/output_files.h"
 #include "report/report.h"
 
 typedef struct arguments {
@@ -61,7 +62,10 @@ cp_status cmd_report(int argc, char **argv, cp_error *error)
     arguments a = {0};
     cp_args_parse(&ARGP, argc, argv, &a);
     cp_store *store = NULL;
-    cp_status status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+    cp_status status =
+        cp_output_files_check(&a.output_path, 1, (const char *const[]){a.db_path}, 1, error);
+    if (status == CP_OK)
+        status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
     if (status == CP_OK)
         status = cp_report_write(store, a.baseline, a.output_path, error);
     if (status == CP_OK)

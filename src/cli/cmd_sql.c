@@ -95,14 +95,20 @@ static cp_status start_shell(const char *db_path, const char *extension, cp_form
     static const char *const MODE[] = {
         [CP_FORMAT_TABLE] = "-column", [CP_FORMAT_JSON] = "-json", [CP_FORMAT_CSV] = "-csv"};
     char load[PATH_MAX + 16];
+    char *file_name = cp_store_file_name(db_path); // no option and no URI of the shell
+    if (file_name == NULL)
+        return cp_fail_memory(error, db_path);
     snprintf(load, sizeof load, ".load '%s'", extension);
     if (extension[0] != '\0')
-        execlp("sqlite3", "sqlite3", "-header", MODE[format], "-cmd", load, db_path, (char *)NULL);
+        execlp("sqlite3", "sqlite3", "-header", MODE[format], "-cmd", load, file_name,
+               (char *)NULL);
     else
-        execlp("sqlite3", "sqlite3", "-header", MODE[format], db_path, (char *)NULL);
-    return cp_fail(error, CP_BAD_INPUT,
-                   "cannot start the sqlite3 shell (%s); install sqlite3 or give a QUERY",
-                   strerror(errno));
+        execlp("sqlite3", "sqlite3", "-header", MODE[format], file_name, (char *)NULL);
+    cp_status status = cp_fail(
+        error, CP_BAD_INPUT, "cannot start the sqlite3 shell (%s); install sqlite3 or give a QUERY",
+        strerror(errno));
+    free(file_name);
+    return status;
 }
 
 static cp_status print_query(cp_store *store, const arguments *a, cp_error *error)

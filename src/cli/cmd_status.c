@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/args.h"
 #include "cli/commands.h"
+#include "core/safe_text.h"
 #include "report/network_background.h"
 #include "run/owner.h"
 #include "store/query.h"
@@ -117,18 +118,27 @@ static void print_reason(const char *reason)
 {
     enum { LONG = 300 };
     const char *last = strrchr(reason, '\n');
-    if (strlen(reason) <= LONG || last == NULL)
-        printf("%s\n", reason);
-    else
-        printf("%.*s\n    ...\n    %s\n", (int)strcspn(reason, "\n"), reason, last + 1);
+    if (strlen(reason) <= LONG || last == NULL) {
+        cp_text_print(stdout, reason, "\n\t");
+    } else {
+        char first[512];
+        snprintf(first, sizeof first, "%.*s", (int)strcspn(reason, "\n"), reason);
+        cp_text_print(stdout, first, "\t");
+        printf("\n    ...\n    ");
+        cp_text_print(stdout, last + 1, "\t");
+    }
+    printf("\n");
 }
 
 static cp_status print_failure(void *context, const cp_row *row, cp_error *error)
 {
     (void)error;
     (void)context;
-    printf("  %s, %s, replication %lld: ", row->cell[0].text, row->cell[1].text,
-           (long long)row->cell[2].integer);
+    printf("  ");
+    cp_text_print(stdout, row->cell[0].text, "");
+    printf(", ");
+    cp_text_print(stdout, row->cell[1].text, "");
+    printf(", replication %lld: ", (long long)row->cell[2].integer);
     print_reason(row->cell[3].text);
     return CP_OK;
 }
@@ -193,9 +203,15 @@ static cp_status print_backgrounds(cp_store *store, cp_error *error)
         printf("\nwithout driver errors or functions:\n");
         for (size_t k = 0; k < backgrounds.count; k++) {
             const cp_network_background *row = &backgrounds.row[k];
-            printf("  %s: %s\n", row->scenario, row->is_known ? row->text : "not simulated yet");
-            if (row->warning != NULL)
-                printf("    warning: %s\n", row->warning);
+            printf("  ");
+            cp_text_print(stdout, row->scenario, "");
+            printf(": ");
+            cp_text_print(stdout, row->is_known ? row->text : "not simulated yet", "");
+            if (row->warning != NULL) {
+                printf("\n    warning: ");
+                cp_text_print(stdout, row->warning, "");
+            }
+            printf("\n");
         }
     }
     cp_network_backgrounds_destroy(&backgrounds);

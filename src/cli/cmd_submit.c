@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "core/file.h"
 #include "core/log.h"
+#include "core/safe_text.h"
 #include "study/study_file.h"
 
 #include <ctype.h>
@@ -138,6 +139,10 @@ static cp_status find_paths(const arguments *a, paths *p, cp_error *error)
     // The scripts quote paths in '...'.
     if (strchr(p->program, '\'') || strchr(p->study, '\'') || strchr(p->db, '\''))
         return cp_fail(error, CP_BAD_INPUT, "paths with a ' in them cannot be submitted");
+    // A line of a script is a command, or words for Slurm.
+    if (!cp_text_is_plain(p->program) || !cp_text_is_plain(p->study) || !cp_text_is_plain(p->db))
+        return cp_fail(error, CP_BAD_INPUT,
+                       "paths with ends of lines or control characters cannot be submitted");
     snprintf(p->folder, sizeof p->folder, "%s.slurm", p->db);
     snprintf(p->array, sizeof p->array, "%s/array.sh", p->folder);
     snprintf(p->merge, sizeof p->merge, "%s/merge.sh", p->folder);

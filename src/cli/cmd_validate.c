@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/pulse_validation.h"
 #include "cli/suite_validation.h"
+#include "core/output_files.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -294,7 +295,10 @@ cp_status cmd_validate(int argc, char **argv, cp_error *error)
     }
 
     cp_vehicle_model model;
-    cp_status status = cp_vehicle_model_load(a.vehicle_path, &model, error);
+    const char *const inputs[] = {a.vehicle_path, a.reference_path, a.pulse.path};
+    cp_status status = cp_output_files_check(&a.curves_path, 1, inputs, 3, error);
+    if (status == CP_OK)
+        status = cp_vehicle_model_load(a.vehicle_path, &model, error);
     if (status != CP_OK)
         return status;
     return a.pulse.path != NULL

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/comparison_table.h"
 
+#include "core/memory.h"
+#include "core/safe_text.h"
 #include "report/answer.h"
 #include "report/quantity.h"
 
@@ -58,21 +60,27 @@ static void add_rows(cp_table *table, const columns *c, size_t row)
 {
     char text[TEXT_SIZE], label[TEXT_SIZE];
     const cp_quantity *first = &c->list[0].row[row];
-    bool second_interval = row > 0 && strcmp(first->name, first[-1].name) == 0 && first->kind;
-    if (!first->label[0] && !(second_interval && first[-1].label[0]))
+    if (!first->label[0] && !first->second)
         return;
     if (first->label[0]) {
         cp_table_text(table, first->label);
         for (size_t k = 0; k < c->count; k++) {
-            cp_estimate estimate = c->list[k].row[row].estimate;
+            const cp_quantity *q = &c->list[k].row[row];
+            cp_estimate estimate = q->estimate;
             estimate.value *= first->factor;
-            cp_table_text(table, cp_estimate_text(estimate, first->digits, text));
+            cp_table_text(table, q->missing ? q->missing
+                                            : cp_estimate_text(estimate, first->digits, text));
         }
     }
     if (!first->kind)
         return;
-    snprintf(label, sizeof label, "    95 %% %s",
-             strcmp(first->kind, "poisson") == 0 ? "Poisson" : first->kind);
+    // Columns may have intervals of unlike kinds; then the row names none.
+    bool alike = true;
+    for (size_t k = 1; k < c->count; k++)
+        alike &= strcmp(c->list[k].row[row].kind, first->kind) == 0;
+    bool poisson = strncmp(first->kind, "poisson", 7) == 0;
+    snprintf(label, sizeof label, "    95 %% %s%s", poisson ? "Poisson" : first->kind,
+             poisson && alike ? first->kind + 7 : "");
     cp_table_text(table, label);
     for (size_t k = 0; k < c->count; k++)
         cp_table_text(table, interval_text(&c->list[k].row[row], text));
@@ -158,9 +166,11 @@ static cp_status print_contrasts(const cp_study_data *data, const cp_comparison 
 }
 
 // A paragraph broken at spaces after at most 79 characters.
-static void print_wrapped(const char *text, FILE *file)
+static void print_wrapped(const char *raw, FILE *file)
 {
-    size_t column = 0;
+    size_t column = 0, room = 4 * strlen(raw) + 1;
+    char *safe = cp_memory_or_end(room, "a paragraph");
+    const char *text = cp_text_for_terminal(raw, "", safe, room);
     while (*text) {
         size_t length = strcspn(text, " "), width = 0;
         for (size_t k = 0; k < length; k++)
@@ -178,6 +188,7 @@ static void print_wrapped(const char *text, FILE *file)
         text += strspn(text, " ");
     }
     fputc('\n', file);
+    free(safe);
 }
 
 void cp_comparison_print_paragraph(const char *text, FILE *file)
@@ -190,8 +201,10 @@ cp_status cp_comparison_print_table(const cp_study_data *data, const cp_comparis
                                     const char *heading_text, const char *answer, FILE *file,
                                     cp_error *error)
 {
-    if (heading_text)
-        fprintf(file, "%s\n\n", heading_text);
+    if (heading_text) {
+        cp_text_print(file, heading_text, "");
+        fputs("\n\n", file);
+    }
     cp_status status = print_variants(data, comparison, file, error);
     if (status == CP_OK)
         status = print_contrasts(data, comparison, false, file, error);
@@ -219,7 +232,9 @@ static void add_csv(cp_table *table, const char *group, const char *variant, con
         cp_table_real(table, q->estimate.value);
         cp_table_real(table, interval ? q->interval.low : NAN);
         cp_table_real(table, interval ? q->interval.high : NAN);
-        if (!q->kind)
+        if (q->missing)
+            cp_table_text(table, q->missing);
+        else if (!q->kind)
             cp_table_null(table);
         else
             cp_table_text(table, interval ? q->kind : cp_interval_status_text(q->interval.status));

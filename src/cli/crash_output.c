@@ -2,6 +2,7 @@
 #include "cli/crash_output.h"
 
 #include "core/file.h"
+#include "core/safe_text.h"
 #include "core/units.h"
 #include "crash/validity.h"
 
@@ -137,12 +138,14 @@ static cp_status print_csv(const cp_crash_run *run, FILE *file, cp_error *error)
 void cp_crash_print_configuration(const cp_crash_run *run, FILE *file)
 {
     const cp_crash_description *d = &run->description;
-    fprintf(file, "%s at %.4g km/h against ", run->model[0]->name,
-            cp_km_h_from_m_s(d->speed_m_s[0]));
-    if (run->configuration.against_barrier)
+    cp_text_print(file, run->model[0]->name, "");
+    fprintf(file, " at %.4g km/h against ", cp_km_h_from_m_s(d->speed_m_s[0]));
+    if (run->configuration.against_barrier) {
         fputs("a rigid barrier", file);
-    else
-        fprintf(file, "%s at %.4g km/h", run->model[1]->name, cp_km_h_from_m_s(d->speed_m_s[1]));
+    } else {
+        cp_text_print(file, run->model[1]->name, "");
+        fprintf(file, " at %.4g km/h", cp_km_h_from_m_s(d->speed_m_s[1]));
+    }
     fprintf(file, ", offset %.0f mm, angle %.4g deg\n", d->lateral_offset_m * 1e3,
             cp_deg_from_rad(d->angle_rad));
     fprintf(file, "closing speed %.4g km/h", cp_km_h_from_m_s(d->closing_speed_m_s));

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
 #include "core/log.h"
+#include "core/memory.h"
 
 #include <errno.h>
+#include <jansson.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct command {
@@ -63,6 +66,7 @@ int main(int argc, char **argv)
 {
     cp_error error = {0};
     cp_status status = CP_OK;
+    json_set_alloc_funcs(cp_memory_for_json, free); // or fields would be missing without a word
     if (argc < 2) {
         print_help(stderr);
         return cp_status_exit_code(CP_BAD_INPUT);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/output.h"
 
+#include "core/safe_text.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -87,22 +89,12 @@ static const char *cell_text(const json_t *cell, int digits, char text[CELL_TEXT
     return text;
 }
 
-// Columns a text takes on the terminal: UTF-8 characters, not bytes.
-static size_t text_width(const char *text)
-{
-    size_t width = 0;
-    for (; *text; text++)
-        width += ((unsigned char)*text & 0xc0) != 0x80;
-    return width;
-}
-
 static void print_padded(FILE *file, const char *text, size_t width, bool right, bool last)
 {
-    int gap = (int)(width - text_width(text));
-    if (right)
-        fprintf(file, "%*s%s", gap, "", text);
-    else
-        fprintf(file, "%s%*s", text, last ? 0 : gap, "");
+    int gap = (int)(width - cp_text_width(text));
+    fprintf(file, "%*s", right ? gap : 0, "");
+    cp_text_print(file, text, "");
+    fprintf(file, "%*s", right || last ? 0 : gap, "");
     fputs(last ? "\n" : "  ", file);
 }
 
@@ -131,12 +123,12 @@ static cp_status print_aligned(const cp_table *table, FILE *file, cp_error *erro
     if (width && right) {
         char text[CELL_TEXT_SIZE];
         for (size_t c = 0; c < table->column_count; c++) {
-            width[c] = text_width(column_name(table, c));
+            width[c] = cp_text_width(column_name(table, c));
             right[c] = table->row_count > 0;
             bool placed = table->right_from > 0 && c >= table->right_from;
             for (size_t r = 0; r < table->row_count; r++) {
                 const json_t *cell = cell_at(table, r, c);
-                size_t own = text_width(cell_text(cell, 6, text));
+                size_t own = cp_text_width(cell_text(cell, 6, text));
                 width[c] = own > width[c] ? own : width[c];
                 right[c] &= placed || !json_is_string(cell);
             }
@@ -150,13 +142,24 @@ static cp_status print_aligned(const cp_table *table, FILE *file, cp_error *erro
     return status;
 }
 
+// A spreadsheet takes a text that begins like this for a formula; not a sign alone, nor a number.
+static bool is_formula(const char *text)
+{
+    char *end = NULL;
+    if (*text == '\0' || text[1] == '\0' || strchr("=+-@\t\r", *text) == NULL)
+        return false;
+    strtod(text, &end);
+    return *end != '\0';
+}
+
 void cp_csv_text(FILE *file, const char *text)
 {
-    if (!strpbrk(text, ",\"\r\n")) {
+    bool formula = is_formula(text);
+    if (!formula && !strpbrk(text, ",\"\r\n")) {
         fputs(text, file);
         return;
     }
-    fputc('"', file);
+    fputs(formula ? "\"'" : "\"", file);
     for (; *text; text++) {
         if (*text == '"')
             fputc('"', file);
@@ -174,7 +177,11 @@ static void print_csv(const cp_table *table, FILE *file)
     }
     for (size_t r = 0; r < table->row_count; r++) {
         for (size_t c = 0; c < table->column_count; c++) {
-            cp_csv_text(file, cell_text(cell_at(table, r, c), 17, text));
+            const json_t *cell = cell_at(table, r, c);
+            if (json_is_string(cell))
+                cp_csv_text(file, cell_text(cell, 17, text));
+            else
+                fputs(cell_text(cell, 17, text), file);
             fputc(c + 1 == table->column_count ? '\n' : ',', file);
         }
     }

@@ -49,7 +49,8 @@ CP_MUST_CHECK cp_status cp_table_print(const cp_table *table, cp_format format, 
 /* Print a JSON value with all digits, indented, and release it; NULL is CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_json_print(json_t *value, FILE *file, cp_error *error);
 
-/* One CSV field, quoted where it must be. */
+/* One CSV field of text, quoted where it must be. One that begins with = + - @ and is no number
+ * gets a ' in front, so that no spreadsheet takes it for a formula. */
 void cp_csv_text(FILE *file, const char *text);
 
 #endif

@@ -135,6 +135,7 @@ static cp_status create(const cp_control_context *context, void **state, cp_erro
         .required_m_s2 = parameter[REQUIRED_M_S2],
         .horizon_s = fmax(release_ttc_s, parameter[TTC_S] + parameter[CONFIRMATION_S] + 0.5),
         .key = context->seed_key,
+        .view = context->view,
     };
     created->traffic = context->traffic;
     created->lookout = cp_lookout_create(&settings, context->traffic);
@@ -181,15 +182,19 @@ static bool is_false_alarm(aeb *self, const cp_control_context *context, uint32_
 }
 
 // Free driving: whether to request braking.
-static void watch(aeb *self, const cp_control_context *context, const cp_vehicle_motion *motion,
-                  aeb_car *car)
+static cp_status watch(aeb *self, const cp_control_context *context,
+                       const cp_vehicle_motion *motion, aeb_car *car, cp_error *error)
 {
     const double *parameter = context->parameter;
     double speed_m_s = motion->after.speed_m_s, instant_s;
     cp_threat threat;
+    bool found = false;
     if (speed_m_s < parameter[SPEED_MIN_M_S] || speed_m_s > parameter[SPEED_MAX_M_S])
-        return;
-    if (cp_lookout_threat(&self->lookout, motion, &threat)) {
+        return CP_OK;
+    cp_status status = cp_lookout_threat(&self->lookout, motion, &found, &threat, error);
+    if (status != CP_OK)
+        return status;
+    if (found) {
         request(self, car, threat.instant_s);
         car->class = threat.class;
         car->is_false = false;
@@ -198,26 +203,30 @@ static void watch(aeb *self, const cp_control_context *context, const cp_vehicle
         car->is_false = true;
         car->false_until_s = car->braking.brake.start_s + parameter[FALSE_DURATION_S];
     }
+    return CP_OK;
 }
 
 // The request goes on, is withdrawn before deceleration has begun, or ends.
-static void follow(aeb *self, const cp_control_context *context, const cp_vehicle_motion *motion,
-                   aeb_car *car)
+static cp_status follow(aeb *self, const cp_control_context *context,
+                        const cp_vehicle_motion *motion, aeb_car *car, cp_error *error)
 {
     double now_s = cp_traffic_time_s(self->traffic);
     cp_threat threat;
     if (car->is_false) {
         car->braking.is_requesting = now_s < car->false_until_s;
-        return;
+        return CP_OK;
     }
-    if (now_s < car->braking.brake.start_s) {
-        car->braking.is_requesting = cp_lookout_threat(&self->lookout, motion, &threat);
-        return;
-    }
-    bool is_calm = motion->after.speed_m_s < 0.1 ||
-                   !cp_lookout_is_danger(&self->lookout, motion, self->release_ttc_s);
-    if (cp_braking_is_over(&car->braking, now_s, is_calm, context->parameter[HOLD_S]))
+    if (now_s < car->braking.brake.start_s)
+        return cp_lookout_threat(&self->lookout, motion, &car->braking.is_requesting, &threat,
+                                 error);
+    bool is_danger = false;
+    cp_status status = CP_OK;
+    if (motion->after.speed_m_s >= 0.1)
+        status =
+            cp_lookout_is_danger(&self->lookout, motion, self->release_ttc_s, &is_danger, error);
+    if (cp_braking_is_over(&car->braking, now_s, !is_danger, context->parameter[HOLD_S]))
         car->braking.is_requesting = false;
+    return status;
 }
 
 static void count_activation(aeb *self, const aeb_car *car)
@@ -241,12 +250,10 @@ static cp_status step_car(aeb *self, const cp_control_context *context,
     cp_status status = cp_lookout_track(&self->lookout, motion, error);
     if (status != CP_OK)
         return status;
-    if (car->braking.is_requesting)
-        follow(self, context, motion, car);
-    else
-        watch(self, context, motion, car);
-    if (!car->braking.is_requesting)
-        return CP_OK;
+    status = car->braking.is_requesting ? follow(self, context, motion, car, error)
+                                        : watch(self, context, motion, car, error);
+    if (status != CP_OK || !car->braking.is_requesting)
+        return status;
     bool was_braking = car->braking.is_braking;
     status = cp_braking_command(&car->braking, self->traffic, motion, context->actuation, error);
     if (car->braking.is_braking) {

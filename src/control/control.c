@@ -3,6 +3,7 @@
 
 #include "control/control_types.h"
 #include "control/driver_error/ignored_foes.h"
+#include "control/road_view.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -27,6 +28,7 @@ struct cp_controls {
     cp_actuation actuation;
     char *only[2]; /* of a treatment: the ids of its two vehicles */
     cp_ignored_foes *ignored;
+    cp_road_view *view;
 };
 
 const cp_control_type *cp_control_type_find(cp_control_kind kind, const char *name)
@@ -78,6 +80,7 @@ static cp_status create_one(cp_controls *controls, active_control *active,
     active->context = (cp_control_context){
         .traffic = controls->traffic,
         .ignored = controls->ignored,
+        .view = controls->view,
         .seed_key = cp_rng_key_text(replication_key, settings->type->name),
         .parameter = active->settings.parameter,
         .equipment = &active->equipment,
@@ -114,6 +117,8 @@ cp_status cp_controls_create(const cp_control_settings *settings, size_t count, 
     created->traffic = traffic;
     cp_status status = cp_ignored_foes_create(&created->ignored, error);
     if (status == CP_OK)
+        status = cp_road_view_create(traffic, &created->view, error);
+    if (status == CP_OK)
         status = create_all(settings, count, study_seed, replication_seed, created, error);
     if (status != CP_OK) {
         cp_controls_destroy(created);
@@ -147,6 +152,7 @@ void cp_controls_destroy(cp_controls *controls)
     free(controls->only[0]);
     free(controls->only[1]);
     cp_ignored_foes_destroy(controls->ignored);
+    cp_road_view_destroy(controls->view);
     free(controls);
 }
 

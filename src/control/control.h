@@ -43,6 +43,7 @@ typedef struct cp_control_context {
     cp_equipment *equipment;         /* of functions: who has it */
     cp_actuation *actuation;         /* of functions: where to ask for braking */
     struct cp_ignored_foes *ignored; /* shared by all (driver_error/ignored_foes.h) */
+    struct cp_road_view *view;       /* likewise (road_view.h) */
 } cp_control_context;
 
 /* A kind of control. create/step/destroy handle its mutable state of one replication. */

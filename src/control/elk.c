@@ -88,6 +88,7 @@ static cp_status create(const cp_control_context *context, void **state, cp_erro
         .has_occlusion = parameter[OCCLUSION_1] >= 0.5,
         .horizon_s = parameter[ONCOMING_S],
         .key = context->seed_key,
+        .view = context->view,
     };
     created->traffic = context->traffic;
     created->lookout = cp_lookout_create(&settings, context->traffic);

@@ -122,6 +122,7 @@ static cp_status create(const cp_control_context *context, void **state, cp_erro
         .required_m_s2 = parameter[REQUIRED_M_S2],
         .horizon_s = fmax(release_ttc_s, parameter[TTC_S] + parameter[CONFIRMATION_S] + 0.5),
         .key = context->seed_key,
+        .view = context->view,
     };
     created->traffic = context->traffic;
     created->lookout = cp_lookout_create(&settings, context->traffic);
@@ -143,14 +144,17 @@ static void destroy(void *state)
 }
 
 // Warn, and see whether and when this driver brakes.
-static void watch(fcw *self, const cp_control_context *context, const cp_vehicle_motion *motion,
-                  fcw_car *car)
+static cp_status watch(fcw *self, const cp_control_context *context,
+                       const cp_vehicle_motion *motion, fcw_car *car, cp_error *error)
 {
     const double *parameter = context->parameter;
     cp_threat threat;
-    if (motion->after.speed_m_s < parameter[SPEED_MIN_M_S] ||
-        !cp_lookout_threat(&self->lookout, motion, &threat))
-        return;
+    bool found = false;
+    cp_status status = CP_OK;
+    if (motion->after.speed_m_s >= parameter[SPEED_MIN_M_S])
+        status = cp_lookout_threat(&self->lookout, motion, &found, &threat, error);
+    if (status != CP_OK || !found)
+        return status;
     const char *id = cp_traffic_vehicle_id(self->traffic, motion->after.vehicle);
     cp_rng_key key = cp_rng_key_text(context->seed_key, id);
     bool heeds = cp_rng_uniform(cp_rng_key_text(key, "compliance"), 0) < parameter[COMPLIANCE_1];
@@ -162,10 +166,11 @@ static void watch(fcw *self, const cp_control_context *context, const cp_vehicle
     car->is_warned = true;
     car->braking = (cp_braking){0};
     if (!heeds)
-        return;
+        return CP_OK;
     cp_brake brake = self->brake;
     brake.start_s = threat.instant_s + parameter[LATENCY_S] + reaction_s;
     cp_braking_begin(&car->braking, &brake);
+    return CP_OK;
 }
 
 static cp_status step_car(fcw *self, const cp_control_context *context,
@@ -180,19 +185,22 @@ static cp_status step_car(fcw *self, const cp_control_context *context,
     if (status != CP_OK)
         return status;
     if (!car->is_warned) {
-        watch(self, context, motion, car);
+        status = watch(self, context, motion, car, error);
     } else {
         // The danger may also pass before the driver has reacted.
         double now_s = cp_traffic_time_s(self->traffic);
-        bool is_calm = motion->after.speed_m_s < 0.1 ||
-                       !cp_lookout_is_danger(&self->lookout, motion, self->release_ttc_s);
+        bool is_danger = false;
+        if (motion->after.speed_m_s >= 0.1)
+            status = cp_lookout_is_danger(&self->lookout, motion, self->release_ttc_s, &is_danger,
+                                          error);
+        bool is_calm = !is_danger;
         bool has_begun = car->braking.is_requesting && now_s >= car->braking.brake.start_s;
         car->is_warned = has_begun ? !cp_braking_is_over(&car->braking, now_s, is_calm,
                                                          context->parameter[HOLD_S])
                                    : !is_calm;
     }
-    if (!car->is_warned || !car->braking.is_requesting)
-        return CP_OK;
+    if (status != CP_OK || !car->is_warned || !car->braking.is_requesting)
+        return status;
     status = cp_braking_command(&car->braking, self->traffic, motion, context->actuation, error);
     if (car->braking.is_braking)
         self->braking_s += cp_traffic_step_length_s(self->traffic);

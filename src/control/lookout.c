@@ -6,6 +6,7 @@
 
 #define TURNING_RAD_S 0.1
 #define OTHERWISE_LATER_S 0.5 /* driving otherwise, they may meet this much later */
+#define EASY_BRAKING_M_S2 4.5 /* as SUMO's drivers brake by default */
 #define BISECTIONS 40
 
 static bool is_turning(const cp_moving_rectangle *moving)
@@ -92,6 +93,16 @@ static bool is_within_reach(const cp_lookout *lookout, const cp_vehicle_motion *
 {
     double reach_m = lookout->settings.horizon_s * (own->after.speed_m_s + other->after.speed_m_s) +
                      own->after.length_m + other->after.length_m;
+    return cp_front_distance_m2(own, other) <= reach_m * reach_m;
+}
+
+// Whether two can touch within a time at all.
+static bool is_in_time(const cp_vehicle_motion *own, const cp_vehicle_motion *other,
+                       double horizon_s)
+{
+    double reach_m = horizon_s * (own->after.speed_m_s + other->after.speed_m_s) +
+                     own->after.length_m + other->after.length_m + own->after.width_m +
+                     other->after.width_m;
     return cp_front_distance_m2(own, other) <= reach_m * reach_m;
 }
 
@@ -186,106 +197,176 @@ bool cp_lookout_is_known(const cp_lookout *lookout, const cp_track *track)
 
 // ---- threats -------------------------------------------------------------------------------
 
-static cp_moving_rectangle straightened(cp_moving_rectangle moving)
+static cp_mover straightened(cp_mover mover)
 {
-    moving.yaw_rate_rad_s = 0.0;
-    return moving;
+    if (mover.way == NULL)
+        mover.now.yaw_rate_rad_s = 0.0;
+    return mover;
 }
 
 // As if it had gained speed evenly from now, or braked: on the same path, as far in time_s as it
 // comes then.
-static cp_moving_rectangle accelerating(cp_moving_rectangle moving, double acceleration_m_s2,
-                                        double time_s)
+static cp_mover accelerating(cp_mover mover, double acceleration_m_s2, double time_s)
 {
-    double speed_m_s = cp_vec2_length(moving.velocity_m_s);
+    double speed_m_s = cp_vec2_length(mover.now.velocity_m_s);
     if (!(speed_m_s > 0.0 && time_s > 0.0))
-        return moving;
+        return mover;
     double until_s =
         acceleration_m_s2 < 0.0 ? fmin(time_s, speed_m_s / -acceleration_m_s2) : time_s;
     double way_m = until_s * (speed_m_s + 0.5 * acceleration_m_s2 * until_s);
     double share_1 = way_m / (speed_m_s * time_s);
-    moving.velocity_m_s = cp_vec2_scale(moving.velocity_m_s, share_1);
-    moving.yaw_rate_rad_s *= share_1;
-    return moving;
+    mover.now.velocity_m_s = cp_vec2_scale(mover.now.velocity_m_s, share_1);
+    mover.now.yaw_rate_rad_s *= share_1;
+    return mover;
+}
+
+// As if it came to rest where it has to wait in the junction, when it can do so at ease.
+static cp_mover waiting(cp_mover mover, double time_s)
+{
+    double speed_m_s = cp_vec2_length(mover.now.velocity_m_s);
+    if (mover.way == NULL || mover.way->yields_m == INFINITY)
+        return mover;
+    double rest_m = mover.way->yields_m - mover.begin_m;
+    double braking_m_s2 = speed_m_s * speed_m_s / (2.0 * rest_m);
+    return rest_m > 0.0 && braking_m_s2 < EASY_BRAKING_M_S2
+               ? accelerating(mover, -braking_m_s2, time_s)
+               : mover;
 }
 
 /* Two vehicles at one moment. */
 typedef struct encounter {
-    cp_moving_rectangle own;
-    cp_moving_rectangle target;
-    double own_m_s2; /* accelerations along their headings */
+    cp_mover own;
+    cp_mover target;
+    const cp_lane_ahead *target_route; /* its way along its route; NULL: not known */
+    double own_m_s2;                   /* accelerations along their headings */
     double target_m_s2;
     cp_target_class class;
     double ttc_s;
 } encounter;
 
+// On a way along a lane only junctions turn a vehicle: a road that bends is no turn.
+static bool is_turning_now(const cp_mover *mover)
+{
+    return is_turning(&mover->now) && (mover->way == NULL || mover->way->is_inside);
+}
+
+// By the headings where they meet: in a bend those of now say little.
+static cp_target_class class_of(const encounter *pair, double time_s)
+{
+    if (pair->own.way == NULL && pair->target.way == NULL)
+        return cp_target_class_of(&pair->own.now, &pair->target.now);
+    double own_rad = cp_mover_at(&pair->own, time_s).yaw_rad;
+    double target_rad = cp_mover_at(&pair->target, time_s).yaw_rad;
+    double apart_rad = fabs(cp_wrap_angle(target_rad - own_rad));
+    if (apart_rad < M_PI / 4.0)
+        return CP_TARGET_REAR_END;
+    if (is_turning_now(&pair->own) || is_turning_now(&pair->target))
+        return CP_TARGET_TURNING;
+    return apart_rad > 0.75 * M_PI ? CP_TARGET_ONCOMING : CP_TARGET_CROSSING;
+}
+
 // Condition 3 without 4: whether the contact takes the function, or the driver sees to it.
 static bool takes_braking(const encounter *pair, double required_m_s2)
 {
-    cp_vec2 axis = cp_vec2_heading(pair->own.rectangle.yaw_rad);
-    double speed_m_s = cp_vec2_dot(pair->own.velocity_m_s, axis);
+    double time_s = pair->ttc_s;
+    double speed_m_s = cp_vec2_length(pair->own.now.velocity_m_s);
     double braking_m_s2 = pair->class != CP_TARGET_ONCOMING ? -pair->own_m_s2 : 0.0;
     if (pair->class == CP_TARGET_REAR_END) {
-        speed_m_s -= cp_vec2_dot(pair->target.velocity_m_s, axis);
+        double apart_rad =
+            cp_mover_at(&pair->target, time_s).yaw_rad - cp_mover_at(&pair->own, time_s).yaw_rad;
+        speed_m_s -= cp_vec2_length(pair->target.now.velocity_m_s) * cos(apart_rad);
         braking_m_s2 += pair->target_m_s2;
     }
-    double twice_s = 2.0 * pair->ttc_s; // v^2/(2 d) with d = v TTC
+    double twice_s = 2.0 * time_s; // v^2/(2 d) with d = v TTC
     return speed_m_s >= twice_s * required_m_s2 && speed_m_s > twice_s * braking_m_s2;
 }
 
 // Conditions 5 and 6.
 static bool meet_otherwise(const encounter *pair, double later_s)
 {
-    const cp_moving_rectangle *own = &pair->own, *target = &pair->target;
+    const cp_mover *own = &pair->own, *target = &pair->target;
     bool may_straighten =
-        pair->ttc_s > CP_LOOKOUT_TURN_HOLDS_S || is_turning(own) || is_turning(target);
-    cp_moving_rectangle own_straight = straightened(*own);
-    cp_moving_rectangle target_straight = straightened(*target);
-    if (may_straighten && (cp_ttc_s(&own_straight, target, later_s) == INFINITY ||
-                           cp_ttc_s(own, &target_straight, later_s) == INFINITY))
+        pair->ttc_s > CP_LOOKOUT_TURN_HOLDS_S || is_turning(&own->now) || is_turning(&target->now);
+    cp_mover own_straight = straightened(*own);
+    cp_mover target_straight = straightened(*target);
+    if (may_straighten && own->way == NULL &&
+        cp_mover_ttc_s(&own_straight, target, later_s) == INFINITY)
+        return false;
+    if (may_straighten && target->way == NULL &&
+        cp_mover_ttc_s(own, &target_straight, later_s) == INFINITY)
+        return false;
+    cp_mover on_route = *target;
+    on_route.way = pair->target_route;
+    if (target->way != NULL && pair->target_route != NULL &&
+        cp_mover_ttc_s(own, &on_route, later_s) == INFINITY)
         return false;
     if (pair->class == CP_TARGET_REAR_END)
         return true;
-    cp_moving_rectangle other = accelerating(*target, pair->target_m_s2, pair->ttc_s);
-    return cp_ttc_s(own, &other, later_s) < INFINITY;
+    cp_mover own_waits = waiting(*own, later_s), target_waits = waiting(*target, later_s);
+    if (cp_mover_ttc_s(&own_waits, target, later_s) == INFINITY ||
+        cp_mover_ttc_s(own, &target_waits, later_s) == INFINITY)
+        return false;
+    cp_mover other = accelerating(*target, pair->target_m_s2, pair->ttc_s);
+    return cp_mover_ttc_s(own, &other, later_s) < INFINITY;
 }
 
 // Conditions 1 to 6 for two vehicles at one moment; class and TTC are set as far as they hold.
 static bool is_threat(const cp_lookout_settings *settings, encounter *pair)
 {
-    pair->class = cp_target_class_of(&pair->own, &pair->target);
-    if (!settings->has_class[pair->class])
+    pair->ttc_s = cp_mover_ttc_s(&pair->own, &pair->target, settings->ttc_s);
+    if (!(pair->ttc_s < settings->ttc_s))
         return false;
-    pair->ttc_s = cp_ttc_s(&pair->own, &pair->target, settings->ttc_s);
-    return pair->ttc_s < settings->ttc_s && takes_braking(pair, settings->required_m_s2) &&
+    pair->class = class_of(pair, pair->ttc_s);
+    return settings->has_class[pair->class] && takes_braking(pair, settings->required_m_s2) &&
            meet_otherwise(pair, settings->ttc_s + OTHERWISE_LATER_S);
 }
 
-static bool is_threat_inside(const cp_lookout_settings *settings, const cp_vehicle_motion *own,
-                             const cp_vehicle_motion *target, double fraction, double *ttc_s)
+/* A pair and the ways of both. */
+typedef struct sight {
+    const cp_vehicle_motion *own;
+    const cp_vehicle_motion *target;
+    const cp_lane_ahead *own_way;
+    const cp_lane_ahead *target_way;
+    const cp_lane_ahead *target_route;
+} sight;
+
+static cp_status look_at_ways(const cp_lookout *lookout, sight *seen, cp_error *error)
 {
-    encounter pair = {.own = cp_moving_rectangle_inside(own, fraction),
-                      .target = cp_moving_rectangle_inside(target, fraction),
-                      .own_m_s2 = own->after.acceleration_m_s2,
-                      .target_m_s2 = target->after.acceleration_m_s2};
-    bool is_one = is_threat(settings, &pair);
-    *ttc_s = pair.ttc_s;
-    return is_one;
+    cp_road_view *view = lookout->settings.view;
+    cp_status status = cp_road_view_way(view, seen->own, CP_WAY_ROUTE, &seen->own_way, error);
+    if (status == CP_OK)
+        status = cp_road_view_way(view, seen->target, CP_WAY_STRAIGHT, &seen->target_way, error);
+    return status;
+}
+
+static encounter encounter_inside(const sight *seen, double fraction)
+{
+    return (encounter){.own = cp_mover_inside(seen->own, seen->own_way, fraction),
+                       .target = cp_mover_inside(seen->target, seen->target_way, fraction),
+                       .target_route = seen->target_route,
+                       .own_m_s2 = seen->own->after.acceleration_m_s2,
+                       .target_m_s2 = seen->target->after.acceleration_m_s2};
+}
+
+static bool is_threat_inside(const cp_lookout_settings *settings, const sight *seen,
+                             double fraction)
+{
+    encounter pair = encounter_inside(seen, fraction);
+    return is_threat(settings, &pair);
 }
 
 // Fraction of the step at which it became a threat, which it is at the end: 0 if it was already at
 // the beginning.
-static double find_instant(const cp_lookout_settings *settings, const cp_vehicle_motion *own,
-                           const cp_vehicle_motion *target)
+static double find_instant(const cp_lookout_settings *settings, const sight *seen)
 {
-    double ttc_s, before_1 = 0.0, after_1 = 1.0;
-    if (!own->was_present || !target->was_present)
+    double before_1 = 0.0, after_1 = 1.0;
+    if (!seen->own->was_present || !seen->target->was_present)
         return 1.0;
-    if (is_threat_inside(settings, own, target, 0.0, &ttc_s))
+    if (is_threat_inside(settings, seen, 0.0))
         return 0.0;
     for (int k = 0; k < BISECTIONS; k++) {
         double middle_1 = 0.5 * (before_1 + after_1);
-        if (is_threat_inside(settings, own, target, middle_1, &ttc_s))
+        if (is_threat_inside(settings, seen, middle_1))
             after_1 = middle_1;
         else
             before_1 = middle_1;
@@ -293,49 +374,81 @@ static double find_instant(const cp_lookout_settings *settings, const cp_vehicle
     return after_1;
 }
 
-bool cp_lookout_threat(const cp_lookout *lookout, const cp_vehicle_motion *own, cp_threat *threat)
+// All conditions at the end of the step.
+static cp_status judge(const cp_lookout *lookout, sight *seen, encounter *pair, bool *threatens,
+                       cp_error *error)
+{
+    const cp_lookout_settings *settings = &lookout->settings;
+    *threatens = false;
+    if (cp_turns_too_fast(seen->own) || cp_turns_too_fast(seen->target) ||
+        !is_in_time(seen->own, seen->target, settings->ttc_s))
+        return CP_OK;
+    cp_status status = look_at_ways(lookout, seen, error);
+    *pair = encounter_inside(seen, 1.0);
+    if (status != CP_OK || !is_threat(settings, pair))
+        return status;
+    // Few come so far: where its signal says it goes, and whether the roads meet.
+    status =
+        cp_road_view_way(settings->view, seen->target, CP_WAY_ROUTE, &seen->target_route, error);
+    pair->target_route = seen->target_route;
+    if (status != CP_OK || !is_threat(settings, pair))
+        return status;
+    return cp_road_view_meet(settings->view, seen->own, &pair->own, seen->target, &pair->target,
+                             pair->ttc_s, threatens, error);
+}
+
+cp_status cp_lookout_threat(const cp_lookout *lookout, const cp_vehicle_motion *own, bool *found,
+                            cp_threat *threat, cp_error *error)
 {
     const cp_lookout_settings *settings = &lookout->settings;
     const cp_tracks tracks = cp_lookout_tracks_of(lookout, own->after.vehicle);
     double now_s = cp_traffic_time_s(lookout->traffic);
     double step_s = cp_traffic_step_length_s(lookout->traffic);
-    bool found = false;
-    for (size_t k = 0; k < tracks.count; k++) {
+    cp_status status = CP_OK;
+    *found = false;
+    for (size_t k = 0; status == CP_OK && k < tracks.count; k++) {
         const cp_track *track = &tracks.track[k];
-        const cp_vehicle_motion *target = cp_traffic_motion_of(lookout->traffic, track->vehicle);
-        double known_s = track->seen_since_s + settings->confirmation_s, ttc_s;
-        if (!target || !cp_lookout_is_known(lookout, track) || cp_turns_too_fast(own) ||
-            cp_turns_too_fast(target) || !is_threat_inside(settings, own, target, 1.0, &ttc_s))
+        sight seen = {.own = own, .target = cp_traffic_motion_of(lookout->traffic, track->vehicle)};
+        double known_s = track->seen_since_s + settings->confirmation_s;
+        encounter pair;
+        bool threatens = false;
+        if (seen.target != NULL && cp_lookout_is_known(lookout, track))
+            status = judge(lookout, &seen, &pair, &threatens, error);
+        if (status != CP_OK || !threatens)
             continue;
-        double inside_s = now_s - (1.0 - find_instant(settings, own, target)) * step_s;
+        double inside_s = now_s - (1.0 - find_instant(settings, &seen)) * step_s;
         double instant_s = fmax(inside_s, known_s);
-        if (found && instant_s >= threat->instant_s)
+        if (*found && instant_s >= threat->instant_s)
             continue;
-        cp_moving_rectangle one = cp_moving_rectangle_of(own);
-        cp_moving_rectangle other = cp_moving_rectangle_of(target);
         *threat = (cp_threat){.vehicle = track->vehicle,
-                              .class = cp_target_class_of(&one, &other),
-                              .ttc_s = ttc_s,
+                              .class = pair.class,
+                              .ttc_s = pair.ttc_s,
                               .instant_s = instant_s};
-        found = true;
+        *found = true;
     }
-    return found;
+    return status;
 }
 
-bool cp_lookout_is_danger(const cp_lookout *lookout, const cp_vehicle_motion *own, double horizon_s)
+cp_status cp_lookout_is_danger(const cp_lookout *lookout, const cp_vehicle_motion *own,
+                               double horizon_s, bool *is_danger, cp_error *error)
 {
     const cp_lookout_settings *settings = &lookout->settings;
     const cp_tracks tracks = cp_lookout_tracks_of(lookout, own->after.vehicle);
-    cp_moving_rectangle one = cp_moving_rectangle_of(own);
-    for (size_t k = 0; k < tracks.count; k++) {
-        const cp_track *track = &tracks.track[k];
-        const cp_vehicle_motion *target = cp_traffic_motion_of(lookout->traffic, track->vehicle);
-        if (!target || !track->is_detectable)
+    cp_status status = CP_OK;
+    *is_danger = false;
+    for (size_t k = 0; status == CP_OK && !*is_danger && k < tracks.count; k++) {
+        sight seen = {.own = own,
+                      .target = cp_traffic_motion_of(lookout->traffic, tracks.track[k].vehicle)};
+        if (seen.target == NULL || !tracks.track[k].is_detectable ||
+            !is_in_time(own, seen.target, horizon_s))
             continue;
-        cp_moving_rectangle other = cp_moving_rectangle_of(target);
-        if (settings->has_class[cp_target_class_of(&one, &other)] &&
-            cp_ttc_s(&one, &other, horizon_s) < INFINITY)
-            return true;
+        status = look_at_ways(lookout, &seen, error);
+        encounter pair = encounter_inside(&seen, 1.0);
+        pair.ttc_s = cp_mover_ttc_s(&pair.own, &pair.target, horizon_s);
+        if (status == CP_OK && pair.ttc_s < INFINITY &&
+            settings->has_class[class_of(&pair, pair.ttc_s)])
+            status = cp_road_view_meet(settings->view, own, &pair.own, seen.target, &pair.target,
+                                       pair.ttc_s, is_danger, error);
     }
-    return false;
+    return status;
 }

@@ -3,6 +3,7 @@
 #define CONTROL_LOOKOUT_H
 
 #include "control/neighbourhood.h"
+#include "control/road_view.h"
 #include "control/sensor.h"
 #include "control/ttc.h"
 #include "control/vehicle_table.h"
@@ -15,21 +16,28 @@
  * another vehicle) without a break for confirmation_s; some are never detected: one seeded draw for
  * each pair of vehicles.
  *
+ * Where both will be is foretold along their lanes (lane_ahead.h): the own car follows its route,
+ * the other stays in its lane and goes straight on where roads branch, unless it drifts. Without a
+ * lane (a scripted road, a car far off any lane) a vehicle keeps velocity and yaw rate (ttc.h).
+ *
  * A known target is a threat when
- *   1. its class is switched on;
- *   2. TTC < ttc_s (ttc.h: constant velocity and yaw rate of both);
+ *   1. its class is switched on, by the headings at the contact to come;
+ *   2. TTC < ttc_s, both at the speeds they have;
  *   3. the deceleration it takes is at least required_m_s2: v^2/(2 d) = v/(2 TTC) with v the own
- *      speed, less the target's along the own axis in same-direction traffic;
+ *      speed, less the target's along the own axis at the contact in same-direction traffic;
  *   4. the driver does not brake that hard already (an oncoming target comes all the same);
- *   5. where one of the two turns, or TTC is above CP_LOOKOUT_TURN_HOLDS_S: it holds too if either
- *      of them drove straight on from now. A driver in a junction straightens up at its end; the
- *      cars waiting beside his way are no targets, although the circle that he is on leads through
- *      them. Neither is one far ahead that moves a little within its lane;
+ *   5. it holds too when the target takes the turn that its route has next, which its signal shows;
+ *      and, of one without a lane, where one of the two turns or TTC is above
+ *      CP_LOOKOUT_TURN_HOLDS_S, if either of them drove straight on from now;
  *   6. of a target that does not head the same way: it holds too if the target goes on braking or
  *      gaining speed as it does. One that is about to stop beside the own way, or to be past it in
  *      time, is none;
- *   7. none of the two turns faster than 1 g of lateral acceleration allows, as cars of SUMO do in
- *      tight corners and where lanes change: there its heading does not say where it goes. */
+ *   7. neither of the two, heading apart, can still come to rest at ease where it has to wait in
+ * the junction for those who go first, and out of the other's way there;
+ *   8. none of the two turns faster than 1 g of lateral acceleration allows, as cars of SUMO do in
+ *      tight corners and where lanes change: there its heading does not say where it goes;
+ *   9. their roads meet where the contact would be (traffic.h): a bridge does not meet the road
+ *      below. */
 
 #define CP_LOOKOUT_TURN_HOLDS_S 1.5 /* assumed */
 
@@ -37,7 +45,8 @@ typedef enum cp_target_class {
     CP_TARGET_REAR_END, /* headings within 45 degrees */
     CP_TARGET_ONCOMING, /* headings apart by more than 135 degrees, nobody turns */
     CP_TARGET_CROSSING, /* in between, nobody turns */
-    CP_TARGET_TURNING,  /* not in the same direction, and one of the two turns, > 0.1 rad/s */
+    CP_TARGET_TURNING,  /* not in the same direction, and one of the two turns, > 0.1 rad/s (on a
+                           lane: within a junction) */
     CP_TARGET_CLASSES
 } cp_target_class;
 
@@ -52,8 +61,9 @@ typedef struct cp_lookout_settings {
     bool has_class[CP_TARGET_CLASSES];
     double ttc_s;
     double required_m_s2;
-    double horizon_s; /* tracks whatever can be met within this; >= ttc_s */
-    cp_rng_key key;   /* of the draws of detection */
+    double horizon_s;   /* tracks whatever can be met within this; >= ttc_s */
+    cp_rng_key key;     /* of the draws of detection */
+    cp_road_view *view; /* the road, borrowed; NULL: nobody knows it */
 } cp_lookout_settings;
 
 /* A target of one car. */
@@ -108,10 +118,12 @@ cp_tracks cp_lookout_tracks_of(const cp_lookout *lookout, uint32_t vehicle);
 /* Whether a target is detectable and has been in view long enough. */
 bool cp_lookout_is_known(const cp_lookout *lookout, const cp_track *track);
 
-/* The threat that came first in this step, false when there is none. Needs cp_lookout_track. */
-bool cp_lookout_threat(const cp_lookout *lookout, const cp_vehicle_motion *own, cp_threat *threat);
+/* The threat that came first in this step, if there is one. Needs cp_lookout_track. */
+CP_MUST_CHECK cp_status cp_lookout_threat(const cp_lookout *lookout, const cp_vehicle_motion *own,
+                                          bool *found, cp_threat *threat, cp_error *error);
 /* Whether a known target of a class switched on is met within horizon_s. */
-bool cp_lookout_is_danger(const cp_lookout *lookout, const cp_vehicle_motion *own,
-                          double horizon_s);
+CP_MUST_CHECK cp_status cp_lookout_is_danger(const cp_lookout *lookout,
+                                             const cp_vehicle_motion *own, double horizon_s,
+                                             bool *is_danger, cp_error *error);
 
 #endif

@@ -2,6 +2,7 @@
 #include "core/yaml_file.h"
 
 #include "core/file.h"
+#include "core/yaml_lines.h"
 
 #include <errno.h>
 #include <math.h>
@@ -9,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <yaml.h>
 
 // ---- libcyaml's messages -------------------------------------------------------------------
 
@@ -34,134 +34,6 @@ static void collect_message(cyaml_log_t level, void *context, const char *format
     const char *cause = strncmp(text, "Load: ", 6) == 0 ? text + 6 : text;
     if (report->message[0] == '\0')
         snprintf(report->message, sizeof report->message, "%s", cause);
-}
-
-// ---- line of every key path ----------------------------------------------------------------
-
-#define DEPTH_MAX 64
-#define PATH_MAX_CHARACTERS 1024
-
-// Where the walk over libyaml's events stands: a stack of open mappings and sequences.
-typedef struct line_walk {
-    cp_yaml_file *file;
-    size_t capacity;
-    int depth;
-    struct {
-        bool mapping;
-        bool key_next;
-        size_t index;
-        char key[256];
-        size_t prefix_length; /* of path, up to this collection */
-    } level[DEPTH_MAX];
-    char path[PATH_MAX_CHARACTERS];
-} line_walk;
-
-// Path of the value that begins now: the open collections' path and the present key or index.
-static void extend_path(line_walk *walk)
-{
-    if (walk->depth == 0) {
-        walk->path[0] = '\0';
-        return;
-    }
-    size_t start = walk->level[walk->depth - 1].prefix_length;
-    size_t room = PATH_MAX_CHARACTERS - start;
-    if (walk->level[walk->depth - 1].mapping)
-        snprintf(walk->path + start, room, "%s%s", start > 0 ? "." : "",
-                 walk->level[walk->depth - 1].key);
-    else
-        snprintf(walk->path + start, room, "[%zu]", walk->level[walk->depth - 1].index);
-}
-
-static bool remember_line(line_walk *walk, size_t line, const char *scalar)
-{
-    cp_yaml_file *file = walk->file;
-    if (file->line_count == walk->capacity) {
-        size_t capacity = walk->capacity == 0 ? 64 : 2 * walk->capacity;
-        cp_yaml_line *lines = realloc(file->lines, capacity * sizeof *lines);
-        if (lines == NULL)
-            return false;
-        file->lines = lines;
-        walk->capacity = capacity;
-    }
-    cp_yaml_line entry = {
-        .path = strdup(walk->path), .scalar = scalar != NULL ? strdup(scalar) : NULL, .line = line};
-    if (entry.path == NULL || (scalar != NULL && entry.scalar == NULL)) {
-        free(entry.path);
-        free(entry.scalar);
-        return false;
-    }
-    file->lines[file->line_count++] = entry;
-    return true;
-}
-
-// After a value: a mapping expects a key again, a sequence counts on.
-static void value_done(line_walk *walk)
-{
-    if (walk->depth == 0)
-        return;
-    walk->level[walk->depth - 1].key_next = true;
-    walk->level[walk->depth - 1].index++;
-}
-
-static bool take_event(line_walk *walk, const yaml_event_t *event)
-{
-    size_t line = event->start_mark.line + 1;
-    bool at_key = walk->depth > 0 && walk->level[walk->depth - 1].mapping &&
-                  walk->level[walk->depth - 1].key_next;
-    switch (event->type) {
-    case YAML_SCALAR_EVENT:
-        if (at_key) {
-            snprintf(walk->level[walk->depth - 1].key, sizeof walk->level[0].key, "%s",
-                     (const char *)event->data.scalar.value);
-            walk->level[walk->depth - 1].key_next = false;
-            return true;
-        }
-        extend_path(walk);
-        if (!remember_line(walk, line, (const char *)event->data.scalar.value))
-            return false;
-        value_done(walk);
-        return true;
-    case YAML_MAPPING_START_EVENT:
-    case YAML_SEQUENCE_START_EVENT:
-        extend_path(walk);
-        if (walk->depth == DEPTH_MAX || !remember_line(walk, line, NULL))
-            return false;
-        walk->level[walk->depth].mapping = event->type == YAML_MAPPING_START_EVENT;
-        walk->level[walk->depth].key_next = true;
-        walk->level[walk->depth].index = 0;
-        walk->level[walk->depth].prefix_length = strlen(walk->path);
-        walk->depth++;
-        return true;
-    case YAML_MAPPING_END_EVENT:
-    case YAML_SEQUENCE_END_EVENT:
-        walk->depth--;
-        value_done(walk);
-        return true;
-    default:
-        return true;
-    }
-}
-
-static bool walk_lines(cp_yaml_file *file, const char *content, size_t size)
-{
-    yaml_parser_t parser;
-    if (!yaml_parser_initialize(&parser))
-        return false;
-    yaml_parser_set_input_string(&parser, (const unsigned char *)content, size);
-    line_walk walk = {.file = file};
-    bool ended = false, good = true;
-    while (good && !ended) {
-        yaml_event_t event;
-        if (!yaml_parser_parse(&parser, &event)) {
-            good = false;
-            break;
-        }
-        good = take_event(&walk, &event);
-        ended = event.type == YAML_STREAM_END_EVENT;
-        yaml_event_delete(&event);
-    }
-    yaml_parser_delete(&parser);
-    return good;
 }
 
 // ---- public --------------------------------------------------------------------------------
@@ -195,6 +67,14 @@ static size_t line_of_complaint(const cp_yaml_file *file, const cyaml_report *re
     return found > 0 ? found : line;
 }
 
+// libyaml has no word for its own lack of memory: libcyaml passes on that it has none.
+static bool lacked_memory(cyaml_err_t outcome, const cyaml_report *report)
+{
+    return outcome == CYAML_ERR_OOM || outcome == CYAML_ERR_LIBYAML_PARSER_INIT ||
+           outcome == CYAML_ERR_LIBYAML_EVENT_INIT ||
+           (outcome == CYAML_ERR_LIBYAML_PARSER && strstr(report->message, "(null)") != NULL);
+}
+
 static cp_status load_structure(cp_yaml_file *file, const char *content, size_t size,
                                 cp_error *error)
 {
@@ -210,7 +90,8 @@ static cp_status load_structure(cp_yaml_file *file, const char *content, size_t 
         return CP_OK;
     if (outcome == CYAML_OK)
         return cp_fail(error, CP_BAD_INPUT, "%s: the file is empty", file->path);
-    walk_lines(file, content, size);
+    if (lacked_memory(outcome, &report))
+        return cp_fail_memory(error, file->path);
     return cp_fail(error, CP_BAD_INPUT, "%s:%zu: %s", file->path, line_of_complaint(file, &report),
                    report.message[0] != '\0' ? report.message : cyaml_strerror(outcome));
 }
@@ -222,10 +103,14 @@ cp_status cp_yaml_parse(const char *name, const char *content, size_t size,
     cp_status status = CP_OK;
     if (file->path == NULL)
         status = cp_fail_memory(error, name);
+    // Before libcyaml's pass: its complaints find their line here, and what it takes without a word
+    // (a second document, aliases of aliases without end) is refused.
+    if (status == CP_OK)
+        status = cp_file_check_text(name, content, size, error);
+    if (status == CP_OK)
+        status = cp_yaml_lines_read(file, content, size, error);
     if (status == CP_OK)
         status = load_structure(file, content, size, error);
-    if (status == CP_OK && !walk_lines(file, content, size))
-        status = cp_fail(error, CP_BAD_INPUT, "%s: is nested too deeply", name);
     if (status != CP_OK)
         cp_yaml_close(file);
     return status;
@@ -290,7 +175,9 @@ bool cp_parse_number(const char *text, double *value)
     char *end = NULL;
     errno = 0;
     double number = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(number) || errno == ERANGE)
+    // strtod takes hexadecimal numbers too; nobody means them.
+    if (end == text || *end != '\0' || !isfinite(number) || errno == ERANGE ||
+        strpbrk(text, "xX") != NULL)
         return false;
     *value = number;
     return true;

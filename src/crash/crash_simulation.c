@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "crash/crash_simulation.h"
 
+#include "core/memory.h"
 #include "crash/barrier.h"
 #include "crash/encounter.h"
 #include "crash/film_camera.h"
@@ -31,8 +32,30 @@ static void report_ode_and_abort(int number, const char *format, va_list argumen
     abort();
 }
 
+// ODE writes through what it is given, in constructors and in its first step: without memory the
+// process ends.
+static void *allocate(dsizeint size)
+{
+    return cp_memory_or_end(size, "the physics engine ODE");
+}
+
+static void *allocate_again(void *memory, dsizeint old_size, dsizeint size)
+{
+    (void)old_size;
+    return cp_memory_again_or_end(memory, size, "the physics engine ODE");
+}
+
+static void release(void *memory, dsizeint size)
+{
+    (void)size;
+    free(memory);
+}
+
 cp_status cp_crash_library_begin(cp_error *error)
 {
+    dSetAllocHandler(allocate);
+    dSetReallocHandler(allocate_again);
+    dSetFreeHandler(release);
     if (!dInitODE2(0) || !dAllocateODEDataForThread(dAllocateMaskAll))
         return cp_fail(error, CP_CRASH_FAILED, "the physics engine ODE could not be initialised");
     dSetMessageHandler(report_ode);
@@ -102,6 +125,7 @@ static cp_status create_world(crash_run *run, cp_error *error)
     dWorldSetGravity(run->world, 0.0, 0.0, 0.0);
     dWorldSetERP(run->world, 0.6);
     dWorldSetCFM(run->world, 1e-11);
+    dWorldSetAutoDisableAverageSamplesCount(run->world, 0); // unused, and taken by operator new
     return CP_OK;
 }
 
@@ -410,20 +434,22 @@ static bool olc_passed(const crash_run *run, bool awaited)
     return true;
 }
 
-// One step of the world; returns whether the parties pressed on each other.
-static bool advance(crash_run *run, double dt)
+// One step of the world; *pressed: the parties pressed on each other.
+static cp_status advance(crash_run *run, double dt, bool *pressed, cp_error *error)
 {
     for (int c = 0; c < run->car_count; c++)
         cp_car_apply_forces(&run->car[c]);
     cp_encounter_apply_forces(&run->encounter, dt);
     update_energy(run);
-    dWorldStep(run->world, dt);
-    bool pressed = cp_encounter_end_step(&run->encounter, dt);
+    if (!dWorldStep(run->world, dt))
+        return cp_fail(error, CP_CRASH_FAILED, "the physics engine ODE refused the step at %g s",
+                       dt * (double)run->sample);
+    *pressed = cp_encounter_end_step(&run->encounter, dt);
     for (int c = 0; c < run->car_count; c++)
         cp_car_after_step(&run->car[c], dt);
     record_step(run, dt);
     film_now(run, dt);
-    return pressed;
+    return CP_OK;
 }
 
 static cp_status simulate_contact(crash_run *run, cp_error *error)
@@ -439,7 +465,11 @@ static cp_status simulate_contact(crash_run *run, cp_error *error)
     // Free from the beginning: nothing to simulate.
     bool free_again = !run->result->touched;
     while (!free_again && run->sample < longest) {
-        if (advance(run, dt)) {
+        bool pressed = false;
+        cp_status status = advance(run, dt, &pressed, error);
+        if (status != CP_OK)
+            return status;
+        if (pressed) {
             last_pressed = run->sample;
             run->result->separation_s = dt * (double)run->sample;
         }

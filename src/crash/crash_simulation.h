@@ -66,7 +66,8 @@ CP_MUST_CHECK cp_status cp_crash_simulate(const cp_vehicle_model *model_a,
                                           cp_error *error);
 void cp_crash_result_destroy(cp_crash_result *result);
 
-/* Process-wide: once before the first simulation, and once after the last. */
+/* Process-wide: once before the first simulation, and once after the last. Where ODE gets
+ * no memory the process ends with a message and exit code 1: it writes through what it is given. */
 CP_MUST_CHECK cp_status cp_crash_library_begin(cp_error *error);
 void cp_crash_library_end(void);
 /* In every further thread that simulates. */

@@ -154,7 +154,7 @@ static cp_status number_in(const reading *self, int column, double *value, cp_er
         return CP_OK;
     const char *text = self->field[self->place[column]];
     *value = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(*value))
+    if (end == text || *end != '\0' || !isfinite(*value) || strpbrk(text, "xX") != NULL)
         return cp_fail(error, CP_BAD_INPUT, "%s:%zu: %s must be a number, found '%s'", self->path,
                        self->line, COLUMN[column].name, text);
     if (*value < COLUMN[column].smallest || *value > COLUMN[column].largest)
@@ -263,7 +263,7 @@ cp_status cp_configurations_csv_read(const char *path, cp_configuration_list *li
     bool has_header = false;
     *list = (cp_configuration_list){0};
     reading self = {.path = path, .list = list};
-    cp_status status = cp_file_read(path, &content, &size, error);
+    cp_status status = cp_file_read_text(path, &content, &size, error);
     for (char *line = content; status == CP_OK && line != NULL;) {
         char *end = strchr(line, '\n');
         if (end != NULL)

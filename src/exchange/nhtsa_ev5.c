@@ -272,7 +272,7 @@ cp_status cp_ev5_load(const char *folder, cp_ev5_test *test, cp_error *error)
     size_t size = 0;
     cp_status status = find_file(folder, test, error);
     if (status == CP_OK)
-        status = cp_file_read(test->path, &content, &size, error);
+        status = cp_file_read_text(test->path, &content, &size, error);
     if (status == CP_OK)
         status = read_lines(content, test, error);
     free(content);
@@ -429,7 +429,7 @@ cp_status cp_ev5_channel_load(const cp_ev5_test *test, int curve, cp_ev5_channel
     if (path == NULL || channel->value == NULL)
         status = cp_fail_memory(error, test->path);
     if (status == CP_OK)
-        status = cp_file_read(path, &content, &size, error);
+        status = cp_file_read_text(path, &content, &size, error);
     if (status == CP_OK)
         status = read_samples(path, content, record_of, channel, error);
     for (size_t k = 0; status == CP_OK && k < channel->sample_count; k++)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/sumo_collisions.h"
 
-#include "exchange/xml_file.h"
+#include "core/xml_file.h"
 
 #include <math.h>
 #include <search.h>

@@ -2,7 +2,7 @@
 #include "exchange/sumo_fcd.h"
 
 #include "core/units.h"
-#include "exchange/xml_file.h"
+#include "core/xml_file.h"
 
 #include <math.h>
 #include <search.h>

@@ -70,11 +70,33 @@ double cp_width_in_way_m(const cp_rectangle *moving, const cp_rectangle *other)
     return fmin(high_m, half_m) - fmax(low_m, -half_m);
 }
 
+double cp_front_edges_overlap_m(const cp_touching_body body[2])
+{
+    cp_vec2 relative_m_s = cp_vec2_sub(body[1].front_velocity_m_s, body[0].front_velocity_m_s);
+    double speed_m_s = cp_vec2_length(relative_m_s);
+    if (!(speed_m_s > 0.0))
+        return -INFINITY;
+    cp_vec2 across = {-relative_m_s.y / speed_m_s, relative_m_s.x / speed_m_s};
+    double low_m[2], high_m[2];
+    for (int k = 0; k < 2; k++) {
+        cp_pose pose = {body[k].rectangle.centre_m, body[k].rectangle.yaw_rad};
+        double half_m = 0.5 * body[k].rectangle.width_m, front_m = 0.5 * body[k].rectangle.length_m;
+        double left_m = cp_vec2_dot(cp_pose_to_world(pose, (cp_vec2){front_m, half_m}), across);
+        double right_m = cp_vec2_dot(cp_pose_to_world(pose, (cp_vec2){front_m, -half_m}), across);
+        low_m[k] = fmin(left_m, right_m);
+        high_m[k] = fmax(left_m, right_m);
+    }
+    return fmin(high_m[0], high_m[1]) - fmax(low_m[0], low_m[1]);
+}
+
 bool cp_contact_is_crash(const cp_touching_body body[2], const cp_touch *touch)
 {
     bool front_on_front = touch->side[0] == CP_SIDE_FRONT && touch->side[1] == CP_SIDE_FRONT;
-    if (front_on_front && cp_width_in_way_m(&body[0].rectangle, &body[1].rectangle) >=
-                              CP_CONFIRMATION_OVERLAP_1 * body[0].rectangle.width_m)
+    double speed_m_s =
+        cp_vec2_length(cp_vec2_sub(body[0].front_velocity_m_s, body[1].front_velocity_m_s));
+    double narrower_m = fmin(body[0].rectangle.width_m, body[1].rectangle.width_m);
+    if (front_on_front && speed_m_s >= CP_CONFIRMATION_DEPTH_M / CP_CONFIRMATION_TIME_S &&
+        cp_front_edges_overlap_m(body) >= CP_CONFIRMATION_OVERLAP_1 * narrower_m)
         return true;
     return cp_contact_goes_deep(body);
 }

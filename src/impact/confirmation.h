@@ -21,8 +21,14 @@ cp_rectangle cp_touching_body_later(const cp_touching_body *body, double time_s)
  * counts like one straight on. */
 bool cp_contact_goes_deep(const cp_touching_body body[2]);
 
-/* True for a crash: it goes deep, or it is front on front over at least 10 % of a's width (body
- * 0 is a). */
+/* How much of the two front edges meets: the length that both cover across the relative velocity of
+ * the bodies, m; negative when they pass each other. What lies behind the edges takes no part: the
+ * flank of a turned car is in the other's way, but not its front. */
+double cp_front_edges_overlap_m(const cp_touching_body body[2]);
+
+/* True for a crash: it goes deep, or it is front on front, at 0.8 m/s or more (slower nothing goes
+ * deep in the time, at any angle), and the front edges meet over at least 10 % of the narrower
+ * width. The same whichever body comes first. */
 bool cp_contact_is_crash(const cp_touching_body body[2], const cp_touch *touch);
 
 /* Width over which the other body lies in the way of a body that goes straight on: of its front

@@ -20,6 +20,9 @@
 #define LONG_M 9.0
 #define FRONT_PART_M 6.0
 
+// A lane bends under a vehicle when it leaves the rectangle's axis by this much.
+#define BENT_M 0.15
+
 // Slower is standing.
 #define STANDING_M_S 0.1
 
@@ -112,6 +115,42 @@ static bool is_on_bent_part(const cp_vehicle_state *state, double yaw_rate_rad_s
     return is_behind && is_bent;
 }
 
+// The same of one whose lane bends under it, moving or standing: buses, trailers and trams follow
+// the road. Where the point is farther from the middle of the lane than their half width, or behind
+// the front part, it is touched by the rectangle only.
+static cp_status is_off_bent_lane(const cp_detector_scene *scene, const cp_vehicle_state *state,
+                                  cp_vec2 point_m, bool *is_off, cp_error *error)
+{
+    const cp_lane_map *map = NULL;
+    *is_off = false;
+    cp_status status = CP_OK;
+    if (state->length_m > LONG_M && scene->lane_map != NULL)
+        status = scene->lane_map(scene->road_context, &map, error);
+    const cp_lane *lane = map != NULL ? cp_lane_map_lane(map, state->lane) : NULL;
+    if (lane == NULL)
+        return status;
+    cp_pose front = {{state->front_x_m, state->front_y_m}, state->yaw_rad};
+    double rear_at_m = state->lane_position_m - state->length_m;
+    double bend_m = 0.0, nearest_m = INFINITY;
+    for (size_t k = 0; k < lane->point_count; k++) {
+        const cp_lane_point *corner = &lane->point[k];
+        cp_vec2 corner_m = {corner->x_m, corner->y_m};
+        bool is_under = corner->at_m > rear_at_m && corner->at_m < state->lane_position_m;
+        if (is_under)
+            bend_m = fmax(bend_m, fabs(cp_pose_to_local(front, corner_m).y));
+        if (k == 0)
+            continue;
+        cp_vec2 from_m = {corner[-1].x_m, corner[-1].y_m};
+        cp_vec2 piece_m = cp_vec2_sub(corner_m, from_m), off_m = cp_vec2_sub(point_m, from_m);
+        double share_1 = cp_vec2_dot(off_m, piece_m) / cp_vec2_dot(piece_m, piece_m);
+        cp_vec2 foot_m = cp_vec2_scale(piece_m, fmin(fmax(share_1, 0.0), 1.0));
+        nearest_m = fmin(nearest_m, cp_vec2_length(cp_vec2_sub(off_m, foot_m)));
+    }
+    bool is_behind = cp_pose_to_local(front, point_m).x < -FRONT_PART_M;
+    *is_off = bend_m > BENT_M && (is_behind || nearest_m > 0.5 * state->width_m + BENT_M);
+    return status;
+}
+
 static cp_touching_body body_of(const cp_impact *impact, int role)
 {
     return (cp_touching_body){.rectangle = cp_footprint_of_state(&impact->state[role]),
@@ -176,6 +215,24 @@ static cp_contact_verdict filter_motion(const cp_detector_scene *scene,
     return is_clipped_waiting(scene, impact) ? CP_CONTACT_CLIPPED_WAITING : CP_CONTACT_CONFIRMED;
 }
 
+// How their roads lie where they touched: at the end of a long step they may have passed each other
+// by far. What each drove between is taken off its place; of one that drives against its lane, as
+// overtakers do, added to it.
+static cp_status relate_at_contact(const cp_detector_scene *scene, const cp_vehicle_state end[2],
+                                   const double way_m[2], cp_road_relation *relation,
+                                   cp_error *error)
+{
+    cp_status status = CP_OK;
+    *relation = CP_ROADS_APART;
+    for (int k = 0; status == CP_OK && *relation == CP_ROADS_APART && k < 4; k++) {
+        cp_vehicle_state at[2] = {end[0], end[1]};
+        at[0].lane_position_m += k & 1 ? way_m[0] : -way_m[0];
+        at[1].lane_position_m += k & 2 ? way_m[1] : -way_m[1];
+        status = scene->road_relation(scene->road_context, &at[0], &at[1], relation, error);
+    }
+    return status;
+}
+
 // Verdict on an impact that is a crash or a graze by the motion of its rectangles alone.
 static cp_status judge(const cp_detector_scene *scene, const cp_vehicle_motion *const motion[2],
                        cp_impact *impact, cp_error *error)
@@ -183,7 +240,9 @@ static cp_status judge(const cp_detector_scene *scene, const cp_vehicle_motion *
     cp_road_relation relation = CP_ROADS_MEET;
     cp_status status = CP_OK;
 
-    // Where on the road they are: at the end of the step.
+    // Where on the road they are at the end of the step, and how much of it they drove after.
+    cp_vehicle_state ends[2];
+    double way_m[2];
     for (int role = 0; status == CP_OK && role < 2; role++) {
         const cp_vehicle_motion *own = motion[motion[0]->after.vehicle != impact->vehicle[role]];
         cp_vehicle_state end = own->after;
@@ -192,16 +251,25 @@ static cp_status judge(const cp_detector_scene *scene, const cp_vehicle_motion *
         impact->state[role].lane = end.lane;
         impact->state[role].lane_position_m = end.lane_position_m;
         impact->state[role].is_in_junction = end.is_in_junction;
+        ends[role] = impact->state[role];
+        way_m[role] = hypot(end.front_x_m - impact->state[role].front_x_m,
+                            end.front_y_m - impact->state[role].front_y_m);
     }
     if (status == CP_OK && scene->road_relation != NULL)
-        status = scene->road_relation(scene->road_context, &impact->state[0], &impact->state[1],
-                                      &relation, error);
+        status = relate_at_contact(scene, ends, way_m, &relation, error);
     if (relation == CP_ROADS_APART)
         impact->verdict = CP_CONTACT_ROADS_APART;
     else if (relation == CP_ROADS_OTHER_LEVEL)
         impact->verdict = CP_CONTACT_OTHER_LEVEL;
     else
         impact->verdict = filter_motion(scene, motion, impact);
+    for (int role = 0; status == CP_OK && role < 2; role++) {
+        bool is_off = false;
+        if (impact->verdict == CP_CONTACT_CONFIRMED)
+            status = is_off_bent_lane(scene, &ends[role], impact->contact_m, &is_off, error);
+        if (is_off)
+            impact->verdict = CP_CONTACT_LONG_TURNING;
+    }
     return status;
 }
 
@@ -362,6 +430,11 @@ static cp_status relation_in_traffic(const void *context, const cp_vehicle_state
     return cp_traffic_road_relation(context, one, other, relation, error);
 }
 
+static cp_status lanes_in_traffic(const void *context, const cp_lane_map **map, cp_error *error)
+{
+    return cp_traffic_lane_map(context, map, error);
+}
+
 static cp_status place_in_traffic(const void *context, cp_vehicle_state *state, cp_error *error)
 {
     return cp_traffic_place(context, state, error);
@@ -379,6 +452,7 @@ cp_status cp_detector_step(cp_detector *detector, const cp_traffic *traffic,
                                .fault_context = context,
                                .place = place_in_traffic,
                                .road_relation = relation_in_traffic,
+                               .lane_map = lanes_in_traffic,
                                .road_context = traffic};
     scene.motions = cp_traffic_motions(traffic, &scene.count);
     return cp_detector_scan(detector, &scene, impacts, count, error);

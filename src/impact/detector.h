@@ -20,6 +20,8 @@ typedef struct cp_detector_scene {
     cp_status (*road_relation)(const void *context, const cp_vehicle_state *one,
                                const cp_vehicle_state *other, cp_road_relation *relation,
                                cp_error *error);
+    /* Where lanes run; NULL, or *map set to NULL: nobody knows. */
+    cp_status (*lane_map)(const void *context, const cp_lane_map **map, cp_error *error);
     const void *road_context;
 } cp_detector_scene;
 

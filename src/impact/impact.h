@@ -25,8 +25,9 @@
  * driver error is at work on either: SUMO's junctions leave corners of waiting cars in the way.
  *
  * long_vehicle_turning: only the part of a vehicle longer than 9 m that is more than 6 m behind its
- * front is touched, while it turns or its rear is still in a junction: SUMO's rigid rectangle is
- * not where a bus's tail or a trailer would be.
+ * front is touched, while it turns, its rear is still in a junction, or its lane bends under it,
+ * standing too; or a point farther from the middle of that lane than its half width: SUMO's rigid
+ * rectangle is not where a bus's tail, a trailer or a tram would be.
  *
  * no_common_road: their roads cross or run side by side without meeting.
  *

@@ -33,47 +33,153 @@ static const char *p_phrase(double p, char text[CP_ESTIMATE_TEXT_SIZE])
 {
     char number[CP_ESTIMATE_TEXT_SIZE];
     cp_p_text(p, number);
-    snprintf(text, CP_ESTIMATE_TEXT_SIZE, number[0] == '<' ? "p < %.20s" : "p = %.20s",
+    snprintf(text, CP_ESTIMATE_TEXT_SIZE, number[0] == '<' ? "Holm p < %.20s" : "Holm p = %.20s",
              number + (number[0] == '<'));
     return text;
 }
 
-// The bootstrap interval where there is one, else the one that trusts the Poisson law.
+// "95 % interval 0.33 to 0.67", an open end as infinity.
+static void write_interval(FILE *out, cp_interval interval, int digits, const char *kind)
+{
+    fprintf(out, "95 %% %s ", kind);
+    if (isinf(interval.low))
+        fputs("−∞", out);
+    else
+        fprintf(out, "%.*f", digits, interval.low);
+    if (isinf(interval.high))
+        fputs(" to ∞", out);
+    else
+        fprintf(out, " to %.*f", digits, interval.high);
+}
+
+static const char *plural(size_t count)
+{
+    return count == 1 ? "" : "es";
+}
+
+// What the interval trusts: resamples, or counts with the scatter that replications show.
+static const char *ratio_kind(const cp_contrast_figures *c)
+{
+    if (c->rate_ratio_bootstrap.status == CP_INTERVAL_VALUE)
+        return "bootstrap interval";
+    return isnan(c->rate_ratio_widening.dispersion_1)
+               ? "Poisson interval, which trusts that replications differ by chance only,"
+               : "interval of Poisson counts widened by their dispersion";
+}
+
 static void write_ratio(FILE *out, const cp_contrast_figures *c)
 {
     if (isnan(c->rate_ratio)) {
-        fputs("rate ratio undefined, the baseline had no frontal crash", out);
+        fputs("a rate ratio cannot be given, as the baseline had no frontal crash", out);
         return;
     }
-    bool bootstrap = c->rate_ratio_bootstrap.status == CP_INTERVAL_VALUE;
-    cp_interval interval = bootstrap ? c->rate_ratio_bootstrap : c->rate_ratio_poisson;
-    fprintf(out, "%.2f times the rate of frontal crashes (95 %% %s %.2f–%.2f", c->rate_ratio,
-            bootstrap ? "bootstrap interval" : "Poisson interval", interval.low, interval.high);
+    fprintf(out, "had %.2f times the rate of frontal crashes (", c->rate_ratio);
+    write_interval(out, cp_rate_ratio_interval(c), 2, ratio_kind(c));
     char p[CP_ESTIMATE_TEXT_SIZE];
-    fprintf(out, ", %s)", p_phrase(c->rate_p_holm, p));
+    if (!isnan(c->rate_p_holm))
+        fprintf(out, ", %s", p_phrase(c->rate_p_holm, p));
+    fprintf(out, "; %zu against %zu frontal crash%s)", c->frontal_crashes[1], c->frontal_crashes[0],
+            plural(c->frontal_crashes[0]));
+}
+
+// Of crashes above the headline severity, with what the range leaves open.
+static void write_exceedance(FILE *out, const cp_exceedance_ratio *r)
+{
+    fprintf(out, "Crashes above an OLC of %g g: ", r->x);
+    if (isnan(r->ratio)) {
+        fputs("none with the baseline", out);
+    } else {
+        fprintf(out, "%.2f times the rate (", r->ratio);
+        write_interval(out, r->interval, 2, "interval");
+        fprintf(out, "; %zu against %zu", r->crashes[1], r->crashes[0]);
+        if (isfinite(r->bound[0]) && isfinite(r->bound[1]))
+            fprintf(out,
+                    "; anything from %.2f to %.2f if severities outside the validated range "
+                    "count as unknown",
+                    r->bound[0], r->bound[1]);
+        else
+            fputs("; anything if severities outside the validated range count as unknown", out);
+        fputc(')', out);
+    }
+    fputs(". ", out);
+}
+
+// A median that censoring hides is said in words.
+static void write_median(FILE *out, cp_estimate median)
+{
+    char text[CP_ESTIMATE_TEXT_SIZE];
+    if (median.relation == CP_NO_VALUE)
+        fputs("below every value (all left-censored)", out);
+    else
+        fprintf(out, "%s g", cp_estimate_text(median, 1, text));
+}
+
+static void write_severity(FILE *out, const cp_study_data *data, const cp_comparison *comparison,
+                           const cp_contrast_figures *c)
+{
+    const cp_contrast *olc = &c->severity[CP_QUANTITY_OLC];
+    const cp_superiority *s = &olc->superiority;
+    const char *treatment = data->variant[c->variant].name;
+    const char *baseline = data->variant[comparison->baseline].name;
+    if (isnan(s->cliffs_delta)) {
+        fputs("Its OLC cannot be compared: no scenario has vehicles with an OLC in both. ", out);
+        return;
+    }
+    fputs("Median OLC of the frontally struck vehicles", out);
+    if (comparison->slice.scenario == CP_SLICE_ALL && data->scenario_count > 1)
+        fputs(", at the same mix of scenarios", out);
+    fputs(": ", out);
+    write_median(out, olc->median[1]);
+    fputs(" against ", out);
+    write_median(out, olc->median[0]);
+    fprintf(out, " (Cliff’s δ = %.2f, ", s->cliffs_delta);
+    if (s->status == CP_INTERVAL_VALUE) {
+        char p[CP_ESTIMATE_TEXT_SIZE];
+        write_interval(out, s->interval, 2, "interval");
+        fprintf(out, ", %s", p_phrase(c->severity_p_holm[CP_QUANTITY_OLC], p));
+    } else if (!isnan(s->p)) {
+        char p[CP_ESTIMATE_TEXT_SIZE];
+        fprintf(out, "completely apart, which leaves no interval, %s at most",
+                p_phrase(c->severity_p_holm[CP_QUANTITY_OLC], p));
+    } else {
+        fprintf(out, "%s for an interval or a test", cp_interval_status_text(s->status));
+    }
+    fprintf(out, "; %zu against %zu vehicles", olc->compared[1], olc->compared[0]);
+
+    // What is missing is said: vehicles of scenarios that only one has, and those without an OLC.
+    const cp_variant_figures *figures[2] = {cp_comparison_variant(comparison, comparison->baseline),
+                                            cp_comparison_variant(comparison, c->variant)};
+    const char *name[2] = {baseline, treatment};
+    for (int g = 0; g < 2; g++) {
+        size_t with = figures[g]->description[CP_QUANTITY_OLC][CP_SCOPE_ALL].count;
+        if (with > olc->compared[g])
+            fprintf(out,
+                    "; %zu of %s not compared, for want of a partner or of a crash of the "
+                    "other in their scenario",
+                    with - olc->compared[g], name[g]);
+        if (figures[g]->simulation_failed > 0)
+            fprintf(out, "; %zu of %s without a simulated crash", figures[g]->simulation_failed,
+                    name[g]);
+    }
+    fputs("). ", out);
 }
 
 static void write_contrast(FILE *out, const cp_study_data *data, const cp_comparison *comparison,
                            const cp_contrast_figures *c)
 {
-    const cp_variant_figures *treatment = cp_comparison_variant(comparison, c->variant);
-    const cp_variant_figures *baseline = cp_comparison_variant(comparison, comparison->baseline);
-    char median[2][CP_ESTIMATE_TEXT_SIZE], p[CP_ESTIMATE_TEXT_SIZE];
-    const cp_contrast *olc = &c->severity[CP_QUANTITY_OLC][CP_SCOPE_ALL];
-    fprintf(out, "%s had ", data->variant[c->variant].name);
-    write_ratio(out, c);
-    fprintf(out,
-            " and a median OLC of %s g against %s g over the frontally struck vehicles of its own "
-            "crashes (",
-            cp_estimate_text(treatment->description[CP_QUANTITY_OLC][CP_SCOPE_ALL].median, 1,
-                             median[0]),
-            cp_estimate_text(baseline->description[CP_QUANTITY_OLC][CP_SCOPE_ALL].median, 1,
-                             median[1]));
-    if (isnan(olc->cliffs_delta))
-        fputs("nothing to compare)", out);
+    fprintf(out, "Against %s, over ", data->variant[comparison->baseline].name);
+    if (data->paired)
+        fprintf(out, "the %zu seeds that both finished", c->replications[1]);
     else
-        fprintf(out, "Cliff’s δ = %.2f, %s)", olc->cliffs_delta,
-                p_phrase(c->severity_p_holm[CP_QUANTITY_OLC][CP_SCOPE_ALL], p));
+        fprintf(out, "%zu against %zu replications", c->replications[1], c->replications[0]);
+    if (c->partnerless[0] + c->partnerless[1] > 0)
+        fprintf(out, " (%zu more without a partner are left out)",
+                c->partnerless[0] + c->partnerless[1]);
+    fprintf(out, ", %s%s ", data->variant[c->variant].name, isnan(c->rate_ratio) ? ":" : "");
+    write_ratio(out, c);
+    fputs(". ", out);
+    write_exceedance(out, &c->above[CP_EXCEEDED_OLC]);
+    write_severity(out, data, comparison, c);
 }
 
 // What a treatment made of the baseline's crashes: outcomes first, then severity over all of them.
@@ -81,26 +187,42 @@ static void write_pairs(FILE *out, const cp_study_data *data, const cp_counterfa
 {
     double valid = c->valid ? (double)c->valid : NAN, percent = 100.0 / valid;
     const cp_paired *olc = &c->olc_g[CP_PAIRED_ALL];
-    fprintf(out, "with %s %zu of %zu valid baseline crashes were avoided (%.0f %%",
-            data->variant[c->variant].name, c->outcome[CP_OUTCOME_AVOIDED], c->valid,
-            percent * (double)c->outcome[CP_OUTCOME_AVOIDED]);
+    fprintf(out, "With %s %zu of %zu valid baseline crashes were avoided (",
+            data->variant[c->variant].name, c->outcome[CP_OUTCOME_AVOIDED], c->valid);
+    if (c->valid)
+        fprintf(out, "%.0f %%", percent * (double)c->outcome[CP_OUTCOME_AVOIDED]);
     cp_interval share = c->share[CP_OUTCOME_AVOIDED];
     if (share.status == CP_INTERVAL_VALUE)
-        fprintf(out, ", 95 %% interval %.0f–%.0f", 100.0 * share.low, 100.0 * share.high);
-    fprintf(out, "), %zu mitigated, %zu unchanged, %zu aggravated and %zu with another opponent",
+        fprintf(out, ", 95 %% interval %.0f to %.0f", 100.0 * share.low, 100.0 * share.high);
+    fprintf(out,
+            "), %zu mitigated, %zu unchanged, %zu aggravated by closing speed (%zu by OLC) and "
+            "%zu with another opponent",
             c->outcome[CP_OUTCOME_MITIGATED], c->outcome[CP_OUTCOME_UNCHANGED],
-            c->outcome[CP_OUTCOME_AGGRAVATED], c->outcome[CP_OUTCOME_CHANGED_OPPONENT]);
+            c->outcome[CP_OUTCOME_AGGRAVATED], c->outcome_olc[CP_OUTCOME_AGGRAVATED],
+            c->outcome[CP_OUTCOME_CHANGED_OPPONENT]);
+    if (c->new_crashes > 0.0)
+        fprintf(out, ", and %g new crash%s between others", c->new_crashes,
+                plural((size_t)c->new_crashes));
     if (!isnan(olc->hodges_lehmann)) {
         char p[CP_ESTIMATE_TEXT_SIZE];
-        fprintf(out, ", and OLC changed by %.1f g (Hodges–Lehmann, avoided = 0 g",
+        fprintf(out,
+                "; the OLC of the crash (the larger of its frontally struck vehicles) changed by "
+                "%.1f g (Hodges–Lehmann, avoided = 0 g",
                 olc->hodges_lehmann);
         if (olc->hodges_lehmann_interval.status == CP_INTERVAL_VALUE)
             fprintf(out, ", 95 %% interval %.1f to %.1f", olc->hodges_lehmann_interval.low,
                     olc->hodges_lehmann_interval.high);
-        fprintf(out, ", %s)", p_phrase(c->p_holm[CP_PAIRED_ALL], p));
+        else
+            fprintf(out, ", %s for an interval",
+                    cp_interval_status_text(olc->hodges_lehmann_interval.status));
+        if (!isnan(c->p_holm[CP_PAIRED_ALL]))
+            fprintf(out, ", %s", p_phrase(c->p_holm[CP_PAIRED_ALL], p));
+        fputc(')', out);
     }
     if (c->crashes > c->valid)
         fprintf(out, "; %zu more could not be judged", c->crashes - c->valid);
+    fprintf(out, ". Of the %zu valid ones inside the validated range with %s, %zu were avoided. ",
+            c->inside_valid, "the baseline", c->inside_outcome[CP_OUTCOME_AVOIDED]);
 }
 
 static void write_counts(FILE *out, const cp_study_data *data, const cp_comparison *comparison)
@@ -108,12 +230,13 @@ static void write_counts(FILE *out, const cp_study_data *data, const cp_comparis
     for (size_t k = 0; k < comparison->variant_count; k++) {
         const cp_variant_figures *v = &comparison->variant[k];
         fprintf(out,
-                "%s%zu frontal crashes with %s (%zu of them front-front with both vehicles "
+                "%s%zu frontal crash%s with %s (%zu of them front-front with both vehicles "
                 "inside the validated range)",
                 k == 0                              ? ""
                 : k + 1 < comparison->variant_count ? ", "
                                                     : " and ",
-                v->frontal_crashes, data->variant[v->variant].name, v->front_front_inside);
+                v->frontal_crashes, plural(v->frontal_crashes), data->variant[v->variant].name,
+                v->front_front_inside);
     }
 }
 
@@ -181,18 +304,16 @@ cp_status cp_comparison_answer(const cp_study_data *data, const cp_comparison *c
         return cp_fail_memory(error, "the answer of a comparison");
 
     // Contrasts first: they are what was asked.
-    for (size_t k = 0; k < comparison->contrast_count; k++) {
-        if (k == 0)
-            fprintf(out, "Against %s, ", data->variant[comparison->baseline].name);
+    for (size_t k = 0; k < comparison->contrast_count; k++)
         write_contrast(out, data, comparison, &comparison->contrast[k]);
-        fputs(k + 1 < comparison->contrast_count ? "; " : ", from ", out);
-    }
-    write_counts(out, data, comparison);
-    for (size_t k = 0; k < comparison->counterfactual_count; k++) {
-        fputs("; ", out);
+    for (size_t k = 0; k < comparison->counterfactual_count; k++)
         write_pairs(out, data, &comparison->counterfactual[k]);
-    }
-    fputs(", all conditional on the assumed driver errors (", out);
+    fputs("In all: ", out);
+    write_counts(out, data, comparison);
+    if (data->unfinished > 0)
+        fprintf(out, "; not counted: %zu planned replication%s that failed or did not finish",
+                data->unfinished, data->unfinished == 1 ? "" : "s");
+    fputs(". All conditional on the assumed driver errors (", out);
     write_driver_errors(out, data, comparison->slice);
     fputs("): these are not accident rates of real traffic.", out);
     int failed = ferror(out);

@@ -14,7 +14,22 @@ const char *const CP_PAIRED_TEXT[CP_PAIRED_COUNT] = {"all_pairs", "conditional_o
 
 cp_comparison_options cp_comparison_options_default(void)
 {
-    return (cp_comparison_options){.repetitions = 2000, .permutations = 1999};
+    cp_comparison_options options = {.repetitions = 2000, .permutations = 1999};
+    for (int what = 0; what < CP_EXCEEDED_COUNT; what++)
+        options.above[what] = CP_EXCEEDED_HEADLINE[what];
+    return options;
+}
+
+cp_interval cp_rate_interval(const cp_variant_figures *figures)
+{
+    return figures->rate_bootstrap.status == CP_INTERVAL_VALUE ? figures->rate_bootstrap
+                                                               : figures->rate_widened;
+}
+
+cp_interval cp_rate_ratio_interval(const cp_contrast_figures *figures)
+{
+    return figures->rate_ratio_bootstrap.status == CP_INTERVAL_VALUE ? figures->rate_ratio_bootstrap
+                                                                     : figures->rate_ratio_widened;
 }
 
 // ---- one variant ---------------------------------------------------------------------------
@@ -73,12 +88,26 @@ static double mean_statistic(const unsigned *weight_a, const unsigned *weight_b,
     return cp_sample_mean(context, weight_a);
 }
 
+// No mean is known of censored vehicles, and none is to be trusted of a few.
+static cp_status figure_mean(const cp_sample *sample, const cp_resampling *resampling,
+                             cp_interval *interval, cp_error *error)
+{
+    cp_resampling informed = *resampling;
+    informed.informative[0] = cp_sample_informative(sample);
+    *interval = (cp_interval){CP_INTERVAL_TOO_FEW_CRASHES, NAN, NAN};
+    if (cp_sample_censored(sample) > 0)
+        interval->status = CP_INTERVAL_CENSORED;
+    else if (!cp_sample_too_few(sample))
+        return cp_bootstrap(&informed, mean_statistic, sample, interval, error);
+    return CP_OK;
+}
+
 // What is given of OLC alone: interval and precision of its mean, band of its distribution.
 static cp_status figure_olc(const cp_sample *sample, const cp_resampling *resampling, int scope,
                             cp_variant_figures *figures, cp_error *error)
 {
     cp_interval *interval = &figures->olc_mean_interval[scope];
-    cp_status status = cp_bootstrap(resampling, mean_statistic, sample, interval, error);
+    cp_status status = figure_mean(sample, resampling, interval, error);
     if (status != CP_OK)
         return status;
     figures->olc_mean_precision[scope] = cp_precision_of(cp_sample_mean(sample, NULL), *interval,
@@ -142,20 +171,15 @@ static cp_status figure_rate(const cp_study_data *data, const cp_replication_set
         figures->vehicle_h += data->replication[set->replication[k]].vehicle_h;
     }
     figures->rate = cp_rate(&exposure) * CP_RATE_PER_KM;
-    figures->dispersion_1 = cp_rate_dispersion(&exposure, set->stratum);
-    figures->rate_garwood = (cp_interval){CP_INTERVAL_UNDEFINED, NAN, NAN};
-    if (figures->vehicle_km > 0.0) {
-        double scale = CP_RATE_PER_KM / figures->vehicle_km;
-        figures->rate_garwood = cp_rate_garwood((double)figures->frontal_crashes, 0.95);
-        figures->rate_garwood.low *= scale;
-        figures->rate_garwood.high *= scale;
-    }
+    figures->rate_widened = cp_rate_widened(&exposure, set->stratum, 0.95, &figures->rate_widening);
+    figures->rate_widened.low *= CP_RATE_PER_KM;
+    figures->rate_widened.high *= CP_RATE_PER_KM;
     cp_status status =
         cp_rate_bootstrap(&exposure, set->stratum, data->seed, &figures->rate_bootstrap, error);
     figures->rate_bootstrap.low *= CP_RATE_PER_KM;
     figures->rate_bootstrap.high *= CP_RATE_PER_KM;
     figures->rate_precision =
-        cp_precision_of(figures->rate, figures->rate_bootstrap, set->count, PRECISION_TARGET_1);
+        cp_precision_of(figures->rate, cp_rate_interval(figures), set->count, PRECISION_TARGET_1);
     return status;
 }
 
@@ -181,6 +205,8 @@ static cp_status figure_variant(const cp_study_data *data, cp_slice slice,
         status = describe(data, &set, slice, &resampling, figures, error);
     if (status == CP_OK)
         status = figure_injuries(data, &set, slice, figures, error);
+    if (status == CP_OK)
+        status = cp_exceedance_figure(data, &set, slice, options, figures, error);
     cp_replication_set_destroy(&set);
     return status;
 }
@@ -189,18 +215,37 @@ static cp_status figure_variant(const cp_study_data *data, cp_slice slice,
 
 static cp_status contrast_severity(const cp_study_data *data, const cp_replication_set set[2],
                                    cp_slice slice, const cp_resampling *resampling,
-                                   size_t permutations, cp_contrast_figures *figures,
-                                   cp_error *error)
+                                   cp_contrast_figures *figures, cp_error *error)
 {
-    for (int place = 0; place < CP_QUANTITIES_COMPARED * CP_SCOPE_COUNT; place++) {
-        int q = place / CP_SCOPE_COUNT, scope = place % CP_SCOPE_COUNT;
+    for (int q = 0; q < CP_QUANTITIES_COMPARED; q++) {
         cp_sample sample[2] = {{0}, {0}};
         cp_status status = CP_OK;
         for (size_t g = 0; g < 2 && status == CP_OK; g++)
-            status = cp_slice_sample(data, &set[g], slice, scope, q, &sample[g], error);
+            status = cp_slice_sample(data, &set[g], slice, CP_SCOPE_ALL, q, &sample[g], error);
         if (status == CP_OK)
-            status = cp_contrast_samples(&sample[0], &sample[1], resampling, permutations,
-                                         &figures->severity[q][scope], error);
+            status = cp_contrast_samples(&sample[0], &sample[1], resampling, &figures->severity[q],
+                                         error);
+        cp_sample_destroy(&sample[0]);
+        cp_sample_destroy(&sample[1]);
+        if (status != CP_OK)
+            return status;
+    }
+    return CP_OK;
+}
+
+// Cliff's delta is least with the treatment's unknown severities lowest and the baseline's highest.
+static cp_status bound_severity(const cp_study_data *data, const cp_replication_set set[2],
+                                cp_slice slice, const cp_resampling *resampling,
+                                cp_contrast_figures *figures, cp_error *error)
+{
+    for (int end = 0; end < 2; end++) {
+        cp_sample sample[2] = {{0}, {0}};
+        cp_status status = CP_OK;
+        for (int g = 0; g < 2 && status == CP_OK; g++)
+            status = cp_slice_bound(data, &set[g], slice, g == end, &sample[g], error);
+        if (status == CP_OK)
+            status = cp_superiority_of(&sample[0], &sample[1], resampling, &figures->olc_bound[end],
+                                       error);
         cp_sample_destroy(&sample[0]);
         cp_sample_destroy(&sample[1]);
         if (status != CP_OK)
@@ -214,12 +259,13 @@ static cp_status contrast_rates(const cp_replication_set set[2], const cp_resamp
 {
     cp_exposure a = cp_replication_set_exposure(&set[0]);
     cp_exposure b = cp_replication_set_exposure(&set[1]);
-    figures->rate_ratio = cp_rate_ratio(&a, &b);
-    figures->rate_ratio_poisson = cp_rate_ratio_poisson(&a, &b, resampling->level_1);
+    figures->rate_ratio = cp_rate_ratio(&a, &b, set[0].stratum, set[1].stratum);
+    figures->rate_ratio_widened =
+        cp_rate_ratio_widened(&a, &b, resampling, &figures->rate_ratio_widening);
     cp_status status =
         cp_rate_ratio_bootstrap(&a, &b, resampling, &figures->rate_ratio_bootstrap, error);
     figures->rate_ratio_precision = cp_precision_of(
-        figures->rate_ratio, figures->rate_ratio_bootstrap, set[1].count, PRECISION_TARGET_1);
+        figures->rate_ratio, cp_rate_ratio_interval(figures), set[1].count, PRECISION_TARGET_1);
     cp_permutation_test test = {NAN, NAN};
     if (status == CP_OK)
         status = cp_contrast_rates(&a, &b, resampling, permutations, &test, error);
@@ -236,6 +282,38 @@ static double total(const double *value, size_t count)
 }
 
 // Benefit is 1 - rate ratio, and so are the bounds of its interval, the other way round.
+static cp_status contrast_benefit(const cp_study_data *data, const cp_replication_set set[2],
+                                  cp_slice slice, const cp_resampling *resampling, size_t risk,
+                                  double *expected[2], cp_benefit_figures *benefit, cp_error *error)
+{
+    cp_exposure exposure[2];
+    double known[2], open[2];
+    for (int g = 0; g < 2; g++) {
+        size_t drivers, unknown, inside;
+        cp_slice_injuries(data, &set[g], slice, CP_SCOPE_INSIDE, &data->risk[risk], expected[g],
+                          &inside, NULL);
+        known[g] = total(expected[g], set[g].count);
+        cp_slice_injuries(data, &set[g], slice, CP_SCOPE_ALL, &data->risk[risk], expected[g],
+                          &drivers, &unknown);
+        open[g] = (double)(drivers + unknown - inside);
+        exposure[g] = (cp_exposure){set[g].count, expected[g], set[g].vehicle_km};
+    }
+    cp_interval ratio;
+    benefit->baseline = total(expected[0], set[0].count);
+    benefit->treatment = total(expected[1], set[1].count);
+    benefit->benefit_1 =
+        1.0 - cp_rate_ratio(&exposure[0], &exposure[1], set[0].stratum, set[1].stratum);
+    cp_status status =
+        cp_rate_ratio_bootstrap(&exposure[0], &exposure[1], resampling, &ratio, error);
+    benefit->interval = (cp_interval){ratio.status, 1.0 - ratio.high, 1.0 - ratio.low};
+
+    // At worst every unknown driver of the treatment is injured and none of the baseline.
+    double km = total(set[0].vehicle_km, set[0].count) / total(set[1].vehicle_km, set[1].count);
+    benefit->bound[0] = 1.0 - km * (known[1] + open[1]) / known[0];
+    benefit->bound[1] = 1.0 - km * known[1] / (known[0] + open[0]);
+    return status;
+}
+
 static cp_status contrast_injuries(const cp_study_data *data, const cp_replication_set set[2],
                                    cp_slice slice, const cp_resampling *resampling,
                                    cp_contrast_figures *figures, cp_error *error)
@@ -245,23 +323,9 @@ static cp_status contrast_injuries(const cp_study_data *data, const cp_replicati
     cp_status status = CP_OK;
     if (!expected[0] || !expected[1])
         status = cp_fail_memory(error, "expected injuries");
-    for (int scope = 0; scope < CP_SCOPE_COUNT && status == CP_OK; scope++) {
-        for (size_t k = 0; k < data->risk_count && status == CP_OK; k++) {
-            cp_benefit_figures *benefit = &figures->benefit[scope][k];
-            cp_exposure exposure[2];
-            for (int g = 0; g < 2; g++) {
-                cp_slice_injuries(data, &set[g], slice, scope, &data->risk[k], expected[g], NULL,
-                                  NULL);
-                exposure[g] = (cp_exposure){set[g].count, expected[g], set[g].vehicle_km};
-            }
-            cp_interval ratio;
-            benefit->baseline = total(expected[0], set[0].count);
-            benefit->treatment = total(expected[1], set[1].count);
-            benefit->benefit_1 = 1.0 - cp_rate_ratio(&exposure[0], &exposure[1]);
-            status = cp_rate_ratio_bootstrap(&exposure[0], &exposure[1], resampling, &ratio, error);
-            benefit->interval = (cp_interval){ratio.status, 1.0 - ratio.high, 1.0 - ratio.low};
-        }
-    }
+    for (size_t k = 0; k < data->risk_count && status == CP_OK; k++)
+        status = contrast_benefit(data, set, slice, resampling, k, expected, &figures->benefit[k],
+                                  error);
     free(expected[0]);
     free(expected[1]);
     return status;
@@ -273,11 +337,9 @@ static cp_status contrast_variant(const cp_study_data *data, const cp_comparison
 {
     cp_replication_set set[2] = {{0}, {0}};
     cp_slice slice = comparison->slice;
-    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
-        figures->benefit[scope] = calloc(data->risk_count + 1, sizeof *figures->benefit[scope]);
-        if (!figures->benefit[scope])
-            return cp_fail_memory(error, "expected injuries");
-    }
+    figures->benefit = calloc(data->risk_count + 1, sizeof *figures->benefit);
+    if (!figures->benefit)
+        return cp_fail_memory(error, "expected injuries");
     cp_status status = cp_replication_set_create(data, slice, comparison->baseline, &set[0], error);
     if (status == CP_OK)
         status = cp_replication_set_create(data, slice, figures->variant, &set[1], error);
@@ -285,15 +347,23 @@ static cp_status contrast_variant(const cp_study_data *data, const cp_comparison
         goto done;
 
     // Paired seeds are compared over the seeds that both variants have finished.
+    size_t finished[2] = {set[0].count, set[1].count};
     if (data->paired)
         cp_replication_set_match(data, &set[0], &set[1]);
+    for (int g = 0; g < 2; g++) {
+        figures->partnerless[g] = finished[g] - set[g].count;
+        figures->frontal_crashes[g] = (size_t)total(set[g].frontal_crashes, set[g].count);
+    }
     cp_resampling resampling = resampling_of(data, options, &set[0], &set[1]);
     figures->replications[0] = set[0].count;
     figures->replications[1] = set[1].count;
     status = contrast_rates(set, &resampling, options->permutations, figures, error);
     if (status == CP_OK)
-        status =
-            contrast_severity(data, set, slice, &resampling, options->permutations, figures, error);
+        status = contrast_severity(data, set, slice, &resampling, figures, error);
+    if (status == CP_OK)
+        status = bound_severity(data, set, slice, &resampling, figures, error);
+    if (status == CP_OK)
+        status = cp_exceedance_contrast(data, set, slice, &resampling, options, figures, error);
     if (status == CP_OK)
         status = contrast_injuries(data, set, slice, &resampling, figures, error);
 
@@ -305,31 +375,31 @@ done:
 
 // ---- all of them -------------------------------------------------------------------------------
 
-// Where the p-value of a family and its adjusted one stand.
-static double *family_p(cp_contrast_figures *c, int family, bool adjusted)
+enum { P_OF_CONTRAST = 1 + 2 * CP_QUANTITIES_COMPARED };
+
+// Where a p-value of a contrast and its adjusted one stand.
+static double *p_of(cp_contrast_figures *c, size_t number, bool adjusted)
 {
-    if (family < 0)
+    if (number == 0)
         return adjusted ? &c->rate_p_holm : &c->rate_p;
-    int q = family / CP_SCOPE_COUNT, scope = family % CP_SCOPE_COUNT;
-    return adjusted ? &c->severity_p_holm[q][scope] : &c->severity[q][scope].mann_whitney.p;
+    size_t q = (number - 1) / 2;
+    if (number % 2 == 1)
+        return adjusted ? &c->severity_p_holm[q] : &c->severity[q].superiority.p;
+    return adjusted ? &c->distance_p_holm[q] : &c->severity[q].distance_p;
 }
 
-// Several treatments against one baseline: every family of p-values is adjusted together.
+// Every p-value a comparison prints is of one family.
 static cp_status adjust(cp_comparison *comparison, cp_error *error)
 {
-    size_t count = comparison->contrast_count;
+    size_t count = P_OF_CONTRAST * comparison->contrast_count;
     double *p = calloc(count + 1, sizeof *p);
     if (!p)
         return cp_fail_memory(error, "Holm's adjustment");
-    cp_status status = CP_OK;
-    int families = CP_QUANTITIES_COMPARED * CP_SCOPE_COUNT;
-    for (int family = -1; family < families && status == CP_OK; family++) {
-        for (size_t k = 0; k < count; k++)
-            p[k] = *family_p(&comparison->contrast[k], family, false);
-        status = cp_holm_adjust(p, count, error);
-        for (size_t k = 0; k < count; k++)
-            *family_p(&comparison->contrast[k], family, true) = p[k];
-    }
+    for (size_t k = 0; k < count; k++)
+        p[k] = *p_of(&comparison->contrast[k / P_OF_CONTRAST], k % P_OF_CONTRAST, false);
+    cp_status status = cp_holm_adjust(p, count, error);
+    for (size_t k = 0; k < count; k++)
+        *p_of(&comparison->contrast[k / P_OF_CONTRAST], k % P_OF_CONTRAST, true) = p[k];
     free(p);
     return status;
 }
@@ -366,12 +436,11 @@ cp_status cp_compare(const cp_study_data *data, size_t baseline, cp_slice slice,
 
 void cp_comparison_destroy(cp_comparison *comparison)
 {
-    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
+    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++)
         for (size_t k = 0; k < comparison->variant_count; k++)
             free(comparison->variant[k].injury[scope]);
-        for (size_t k = 0; k < comparison->contrast_count; k++)
-            free(comparison->contrast[k].benefit[scope]);
-    }
+    for (size_t k = 0; k < comparison->contrast_count; k++)
+        free(comparison->contrast[k].benefit);
     for (size_t k = 0; k < comparison->counterfactual_count; k++)
         free(comparison->counterfactual[k].benefit);
     free(comparison->counterfactual);

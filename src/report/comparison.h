@@ -2,6 +2,7 @@
 #ifndef REPORT_COMPARISON_H
 #define REPORT_COMPARISON_H
 
+#include "report/exceedance.h"
 #include "report/study_data.h"
 #include "stats/band.h"
 #include "stats/contrast.h"
@@ -24,8 +25,10 @@ typedef struct cp_slice {
                                     a frontally struck one does */
 } cp_slice;
 
-/* Severity is given over all frontally struck vehicles and over those inside the range the
- * surrogate was validated in. */
+/* Severity is described over all frontally struck vehicles and over those inside the range the
+ * surrogate was validated in. It is compared over all only: a treatment moves crashes out of the
+ * range, so that "inside" would select on the outcome; what lies outside is taken for unknown in
+ * bounds instead. */
 enum { CP_SCOPE_ALL, CP_SCOPE_INSIDE, CP_SCOPE_COUNT };
 
 /* "all", "inside". */
@@ -63,6 +66,8 @@ typedef struct cp_benefit_figures {
     double treatment;
     double benefit_1; /* NAN without any expected with the baseline */
     cp_interval interval;
+    double bound[2]; /* of the benefit, lower and upper, were the risk of each vehicle outside
+                        validity, or without a predictor, anything from 0 to 1; -INFINITY; NAN */
 } cp_benefit_figures;
 
 typedef struct cp_variant_figures {
@@ -74,13 +79,15 @@ typedef struct cp_variant_figures {
     size_t frontal_crashes;    /* at least one vehicle struck on its front */
     size_t front_front_inside; /* of these front-front with both vehicles inside validity */
     double rate;               /* frontal crashes per 10^6 veh-km; NAN without exposure */
-    cp_interval rate_garwood;  /* 95 %, exact if counts are Poisson */
+    cp_interval rate_widened;  /* 95 %, of Poisson counts, widened by their dispersion */
     cp_interval rate_bootstrap;
-    double dispersion_1; /* of frontal crashes over replications; NAN when unknown */
+    cp_widening rate_widening;              /* dispersion of frontal crashes over replications */
+    cp_exceedance above[CP_EXCEEDED_COUNT]; /* at the x of the options */
+    cp_exceedance curve[CP_EXCEEDED_COUNT][CP_EXCEEDANCE_POINTS];
     size_t frontal_vehicles;
     size_t simulation_failed;    /* of these: no OLC, not even censored */
     size_t inside;               /* of these inside validity */
-    cp_precision rate_precision; /* of the bootstrap interval, target +-10 % */
+    cp_precision rate_precision; /* of the interval that counts, target +-10 % */
     cp_description description[CP_QUANTITY_COUNT][CP_SCOPE_COUNT]; /* over frontally struck ones */
     cp_interval olc_mean_interval[CP_SCOPE_COUNT];
     cp_precision olc_mean_precision[CP_SCOPE_COUNT]; /* target +-10 % */
@@ -92,15 +99,22 @@ typedef struct cp_variant_figures {
 typedef struct cp_contrast_figures {
     size_t variant;
     size_t replications[2]; /* compared, of baseline and treatment; paired: the common seeds */
-    double rate_ratio;
-    cp_interval rate_ratio_poisson; /* 95 %, exact if counts are Poisson */
+    size_t partnerless[2];  /* finished, but without a partner and left out */
+    size_t frontal_crashes[2];
+    double rate_ratio;              /* Mantel and Haenszel's, over scenarios */
+    cp_interval rate_ratio_widened; /* 95 %, of Poisson counts, widened by their dispersion */
+    cp_widening rate_ratio_widening;
     cp_interval rate_ratio_bootstrap;
     double rate_p;      /* by permutation of whole replications */
-    double rate_p_holm; /* adjusted for the number of treatments */
+    double rate_p_holm; /* adjusted for every p of the comparison */
     cp_precision rate_ratio_precision;
-    cp_contrast severity[CP_QUANTITIES_COMPARED][CP_SCOPE_COUNT];
-    double severity_p_holm[CP_QUANTITIES_COMPARED][CP_SCOPE_COUNT]; /* of the Mann-Whitney tests */
-    cp_benefit_figures *benefit[CP_SCOPE_COUNT];                    /* one a risk function */
+    cp_exceedance_ratio above[CP_EXCEEDED_COUNT];
+    cp_contrast severity[CP_QUANTITIES_COMPARED]; /* over all, mixed alike over scenarios */
+    double severity_p_holm[CP_QUANTITIES_COMPARED];
+    double distance_p_holm[CP_QUANTITIES_COMPARED];
+    cp_superiority olc_bound[2]; /* Cliff's delta of OLC, least and most, with every severity
+                                    outside validity unknown */
+    cp_benefit_figures *benefit; /* one a risk function */
 } cp_contrast_figures;
 
 /* Paired severity of the pairs: (a) over all valid pairs, avoided = 0 g; (b) conditional on
@@ -123,8 +137,17 @@ typedef struct cp_counterfactual_figures {
     double new_crashes;                        /* between others, over the valid pairs */
     cp_paired olc_g[CP_PAIRED_COUNT];
     cp_paired closing_speed_m_s[CP_PAIRED_COUNT];
-    double p_holm[CP_PAIRED_COUNT]; /* of the signed-rank tests of OLC */
-    cp_benefit_figures *benefit;    /* one a risk function, both drivers, all valid pairs */
+    double p_holm[CP_PAIRED_COUNT];       /* of the signed-rank tests of OLC, for every p printed */
+    double speed_p_holm[CP_PAIRED_COUNT]; /* likewise of closing speed */
+    cp_benefit_figures *benefit;          /* one a risk function, both drivers, all valid pairs */
+    /* The same of the crashes that had both vehicles inside validity with the baseline: known
+       before any treatment, so this selects nothing by its outcome. */
+    size_t inside_crashes;
+    size_t inside_valid;
+    size_t inside_outcome[CP_OUTCOME_NO_OLC];
+    size_t inside_treated_outside; /* of these valid pairs: the treated crash lies outside */
+    cp_interval inside_share[CP_OUTCOME_NO_OLC];
+    cp_paired inside_olc_g; /* all valid pairs of these, avoided = 0 g */
 } cp_counterfactual_figures;
 
 typedef struct cp_comparison {
@@ -139,9 +162,15 @@ typedef struct cp_comparison {
     cp_counterfactual_figures *counterfactual; /* every treatment with pairs */
 } cp_comparison;
 
+/* The interval of a rate and of a ratio that counts: by bootstrap where replications allow one,
+ * else the widened one. */
+cp_interval cp_rate_interval(const cp_variant_figures *figures);
+cp_interval cp_rate_ratio_interval(const cp_contrast_figures *figures);
+
 typedef struct cp_comparison_options {
-    size_t repetitions;  /* of the bootstrap, default 2000 */
-    size_t permutations; /* of the tests, default 1999 */
+    size_t repetitions;              /* of the bootstrap, default 2000 */
+    size_t permutations;             /* of the tests, default 1999 */
+    double above[CP_EXCEEDED_COUNT]; /* headline x of crashes above a severity, >= 0, SI */
 } cp_comparison_options;
 
 cp_comparison_options cp_comparison_options_default(void);

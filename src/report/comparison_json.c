@@ -25,7 +25,7 @@ static json_t *description_json(const cp_description *d)
 {
     return json_pack(
         "{s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "n", (json_int_t)d->count,
-        "censored", (json_int_t)d->censored, "mean", cp_number_json(d->mean), "sd",
+        "censored", (json_int_t)d->censored, "mean", estimate_json(d->mean_of_all), "sd",
         cp_number_json(d->sd), "min", estimate_json(d->minimum), "q25", estimate_json(d->q25),
         "median", estimate_json(d->median), "q75", estimate_json(d->q75), "p90",
         estimate_json(d->p90), "p95", estimate_json(d->p95), "max", estimate_json(d->maximum));
@@ -82,22 +82,77 @@ static json_t *benefits_json(const cp_study_data *data, const cp_benefit_figures
 {
     json_t *list = json_array();
     for (size_t k = 0; k < data->risk_count; k++)
-        json_array_append_new(list, json_pack("{s:s, s:s, s:f, s:f, s:o, s:o}", "function",
-                                              data->risk[k].name, "level", data->risk[k].level,
-                                              "baseline", benefit[k].baseline, "treatment",
-                                              benefit[k].treatment, "benefit_1",
-                                              cp_number_json(benefit[k].benefit_1), "interval",
-                                              interval_json(benefit[k].interval)));
+        json_array_append_new(
+            list,
+            json_pack("{s:s, s:s, s:f, s:f, s:o, s:o, s:[o, o]}", "function", data->risk[k].name,
+                      "level", data->risk[k].level, "baseline", benefit[k].baseline, "treatment",
+                      benefit[k].treatment, "benefit_1", cp_number_json(benefit[k].benefit_1),
+                      "interval", interval_json(benefit[k].interval), "bounds_1",
+                      cp_number_json(benefit[k].bound[0]), cp_number_json(benefit[k].bound[1])));
     return list;
+}
+
+static json_t *widening_json(const cp_widening *w)
+{
+    return json_pack("{s:o, s:f, s:f}", "dispersion", cp_number_json(w->dispersion_1), "freedom",
+                     w->freedom, "variance_factor", w->factor_1);
+}
+
+// Crashes above a severity: at the x of the options, and the curve as columns.
+static json_t *exceedance_json(const cp_variant_figures *v)
+{
+    json_t *object = json_object();
+    for (int what = 0; what < CP_EXCEEDED_COUNT; what++) {
+        const cp_exceedance *e = &v->above[what];
+        json_t *x = json_array(), *crashes = json_array(), *rate = json_array();
+        json_t *low = json_array(), *high = json_array(), *least = json_array();
+        json_t *most = json_array();
+        for (size_t k = 0; k < CP_EXCEEDANCE_POINTS; k++) {
+            const cp_exceedance *p = &v->curve[what][k];
+            json_array_append_new(x, cp_number_json(p->x));
+            json_array_append_new(crashes, json_integer((json_int_t)p->crashes));
+            json_array_append_new(rate, cp_number_json(p->rate));
+            json_array_append_new(low, cp_number_json(p->interval.low));
+            json_array_append_new(high, cp_number_json(p->interval.high));
+            json_array_append_new(least, json_integer((json_int_t)p->least));
+            json_array_append_new(most, json_integer((json_int_t)p->most));
+        }
+        json_t *curve = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "x", x, "crashes", crashes,
+                                  "per_million_km", rate, "low", low, "high", high, "at_least",
+                                  least, "at_most", most);
+        json_object_set_new(object, CP_EXCEEDED_TEXT[what],
+                            json_pack("{s:f, s:I, s:I, s:I, s:o, s:o, s:o}", "x", e->x, "crashes",
+                                      (json_int_t)e->crashes, "at_least", (json_int_t)e->least,
+                                      "at_most", (json_int_t)e->most, "per_million_km",
+                                      cp_number_json(e->rate), "interval",
+                                      interval_json(e->interval), "curve", curve));
+    }
+    return object;
+}
+
+static json_t *exceedance_ratios_json(const cp_contrast_figures *c)
+{
+    json_t *object = json_object();
+    for (int what = 0; what < CP_EXCEEDED_COUNT; what++) {
+        const cp_exceedance_ratio *r = &c->above[what];
+        json_object_set_new(object, CP_EXCEEDED_TEXT[what],
+                            json_pack("{s:f, s:[I, I], s:o, s:o, s:[o, o]}", "x", r->x, "crashes",
+                                      (json_int_t)r->crashes[0], (json_int_t)r->crashes[1], "ratio",
+                                      cp_number_json(r->ratio), "interval",
+                                      interval_json(r->interval), "bounds",
+                                      cp_number_json(r->bound[0]), cp_number_json(r->bound[1])));
+    }
+    return object;
 }
 
 static json_t *variant_json(const cp_study_data *data, const cp_comparison *comparison,
                             const cp_variant_figures *v)
 {
-    json_t *rate = json_pack(
-        "{s:o, s:o, s:o, s:o, s:o}", "value", cp_number_json(v->rate), "garwood",
-        interval_json(v->rate_garwood), "bootstrap", interval_json(v->rate_bootstrap), "dispersion",
-        cp_number_json(v->dispersion_1), "precision", precision_json(v->rate_precision));
+    json_t *rate =
+        json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "value", cp_number_json(v->rate), "interval",
+                  interval_json(cp_rate_interval(v)), "widened", interval_json(v->rate_widened),
+                  "bootstrap", interval_json(v->rate_bootstrap), "widening",
+                  widening_json(&v->rate_widening), "precision", precision_json(v->rate_precision));
     double share = v->frontal_vehicles ? (double)v->inside / (double)v->frontal_vehicles : NAN;
     json_t *object = json_pack(
         "{s:s, s:b, s:I, s:f, s:f, s:I, s:I, s:I, s:o, s:I, s:I, s:I, s:o}", "variant",
@@ -111,48 +166,58 @@ static json_t *variant_json(const cp_study_data *data, const cp_comparison *comp
     for (int q = 0; q < CP_QUANTITY_COUNT; q++)
         json_object_set_new(object, QUANTITY[q], scopes_json(v, q));
     json_object_set_new(object, "expected_injured_drivers", injuries_json(data, v));
+    json_object_set_new(object, "crashes_above", exceedance_json(v));
     return object;
 }
 
-static json_t *severity_json(const cp_contrast *c, double p_holm)
+static json_t *superiority_json(const cp_superiority *s)
+{
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:s}", "cliffs_delta",
+                     cp_number_json(s->cliffs_delta), "interval", interval_json(s->interval),
+                     "standard_error", cp_number_json(s->standard_error), "freedom",
+                     cp_number_json(s->freedom), "p", cp_number_json(s->p), "status",
+                     cp_interval_status_text(s->status));
+}
+
+static json_t *severity_json(const cp_contrast *c, double p_holm, double distance_p_holm)
 {
     return json_pack(
-        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "mean_difference",
+        "{s:[I, I], s:[o, o], s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "compared",
+        (json_int_t)c->compared[0], (json_int_t)c->compared[1], "medians",
+        estimate_json(c->median[0]), estimate_json(c->median[1]), "mean_difference",
         estimate_json(c->mean_difference), "mean_interval", interval_json(c->mean_interval),
         "median_difference", estimate_json(c->median_difference), "median_interval",
         interval_json(c->median_interval), "p90_difference", estimate_json(c->p90_difference),
-        "p90_interval", interval_json(c->p90_interval), "cliffs_delta",
-        cp_number_json(c->cliffs_delta), "cliffs_delta_interval",
-        interval_json(c->cliffs_delta_interval), "mann_whitney_u",
-        cp_number_json(c->mann_whitney.statistic), "mann_whitney_p",
-        cp_number_json(c->mann_whitney.p), "mann_whitney_p_holm", cp_number_json(p_holm),
-        "kolmogorov_smirnov_d", cp_number_json(c->kolmogorov_smirnov.statistic),
-        "kolmogorov_smirnov_p", cp_number_json(c->kolmogorov_smirnov.p));
+        "p90_interval", interval_json(c->p90_interval), "superiority",
+        superiority_json(&c->superiority), "p_holm", cp_number_json(p_holm), "distance",
+        cp_number_json(c->distance), "distance_p", cp_number_json(c->distance_p), "distance_p_holm",
+        cp_number_json(distance_p_holm));
 }
 
 static json_t *contrast_json(const cp_study_data *data, const cp_contrast_figures *c)
 {
-    json_t *object =
-        json_pack("{s:s, s:b, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "variant",
-                  data->variant[c->variant].name, "paired", data->paired, "baseline_replications",
-                  (json_int_t)c->replications[0], "treatment_replications",
-                  (json_int_t)c->replications[1], "rate_ratio", cp_number_json(c->rate_ratio),
-                  "rate_ratio_poisson", interval_json(c->rate_ratio_poisson),
-                  "rate_ratio_bootstrap", interval_json(c->rate_ratio_bootstrap),
-                  "rate_ratio_precision", precision_json(c->rate_ratio_precision), "rate_p",
-                  cp_number_json(c->rate_p), "rate_p_holm", cp_number_json(c->rate_p_holm));
-    for (int q = 0; q < CP_QUANTITIES_COMPARED; q++) {
-        json_t *scopes = json_object();
-        for (int scope = 0; scope < CP_SCOPE_COUNT; scope++)
-            json_object_set_new(
-                scopes, CP_SCOPE_TEXT[scope],
-                severity_json(&c->severity[q][scope], c->severity_p_holm[q][scope]));
-        json_object_set_new(object, QUANTITY[q], scopes);
-    }
-    json_t *benefit = json_object();
-    for (int scope = 0; scope < CP_SCOPE_COUNT; scope++)
-        json_object_set_new(benefit, CP_SCOPE_TEXT[scope], benefits_json(data, c->benefit[scope]));
-    json_object_set_new(object, "injury_benefit", benefit);
+    json_t *object = json_pack(
+        "{s:s, s:b, s:I, s:I, s:[I, I], s:[I, I], s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}",
+        "variant", data->variant[c->variant].name, "paired", data->paired, "baseline_replications",
+        (json_int_t)c->replications[0], "treatment_replications", (json_int_t)c->replications[1],
+        "without_partner", (json_int_t)c->partnerless[0], (json_int_t)c->partnerless[1],
+        "frontal_crashes", (json_int_t)c->frontal_crashes[0], (json_int_t)c->frontal_crashes[1],
+        "rate_ratio", cp_number_json(c->rate_ratio), "rate_ratio_interval",
+        interval_json(cp_rate_ratio_interval(c)), "rate_ratio_widened",
+        interval_json(c->rate_ratio_widened), "rate_ratio_widening",
+        widening_json(&c->rate_ratio_widening), "rate_ratio_bootstrap",
+        interval_json(c->rate_ratio_bootstrap), "rate_ratio_precision",
+        precision_json(c->rate_ratio_precision), "rate_p", cp_number_json(c->rate_p), "rate_p_holm",
+        cp_number_json(c->rate_p_holm));
+    for (int q = 0; q < CP_QUANTITIES_COMPARED; q++)
+        json_object_set_new(
+            object, QUANTITY[q],
+            severity_json(&c->severity[q], c->severity_p_holm[q], c->distance_p_holm[q]));
+    json_object_set_new(object, "olc_bounds",
+                        json_pack("[o, o]", superiority_json(&c->olc_bound[0]),
+                                  superiority_json(&c->olc_bound[1])));
+    json_object_set_new(object, "crashes_above", exceedance_ratios_json(c));
+    json_object_set_new(object, "injury_benefit", benefits_json(data, c->benefit));
     return object;
 }
 
@@ -187,14 +252,27 @@ static json_t *counterfactual_json(const cp_study_data *data, const cp_counterfa
         json_object_set_new(olc, CP_PAIRED_TEXT[which],
                             paired_json(&c->olc_g[which], c->p_holm[which]));
         json_object_set_new(speed, CP_PAIRED_TEXT[which],
-                            paired_json(&c->closing_speed_m_s[which], NAN));
+                            paired_json(&c->closing_speed_m_s[which], c->speed_p_holm[which]));
     }
-    return json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:f, s:o, s:o, s:o}", "variant",
+    json_t *inside = json_object(), *inside_shares = json_object();
+    for (int o = 0; o < CP_OUTCOME_NO_OLC; o++) {
+        const char *name = cp_outcome_text((cp_outcome)o);
+        json_object_set_new(inside, name, json_integer((json_int_t)c->inside_outcome[o]));
+        if (o != CP_OUTCOME_INVALID)
+            json_object_set_new(inside_shares, name, interval_json(c->inside_share[o]));
+    }
+    json_t *of_inside =
+        json_pack("{s:I, s:I, s:I, s:o, s:o, s:o}", "crashes", (json_int_t)c->inside_crashes,
+                  "valid", (json_int_t)c->inside_valid, "treated_outside",
+                  (json_int_t)c->inside_treated_outside, "outcomes", inside, "shares",
+                  inside_shares, "olc_change_g", paired_json(&c->inside_olc_g, NAN));
+    return json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:f, s:o, s:o, s:o, s:o}", "variant",
                      data->variant[c->variant].name, "crashes", (json_int_t)c->crashes, "valid",
                      (json_int_t)c->valid, "outcomes", outcomes, "shares", shares,
                      "outcomes_by_olc", by_olc, "invalid_reasons", reasons, "new_crashes",
                      c->new_crashes, "olc_change_g", olc, "closing_speed_change_m_s", speed,
-                     "injury_benefit", benefits_json(data, c->benefit));
+                     "baseline_inside", of_inside, "injury_benefit",
+                     benefits_json(data, c->benefit));
 }
 
 json_t *cp_comparison_json(const cp_study_data *data, const cp_comparison *comparison)

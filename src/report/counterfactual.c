@@ -59,6 +59,12 @@ static void gather(pairs *p, size_t variant)
     }
 }
 
+// Both vehicles inside validity with the baseline.
+static bool inside(const pairs *p, const cp_study_pair *pair)
+{
+    return p->data->crash[pair->crash].inside;
+}
+
 static void count_outcomes(const pairs *p, cp_counterfactual_figures *figures)
 {
     figures->crashes = p->count;
@@ -71,28 +77,43 @@ static void count_outcomes(const pairs *p, cp_counterfactual_figures *figures)
             figures->new_crashes += pair->new_crashes;
         else
             figures->reason[pair->reason]++;
+        if (!inside(p, pair))
+            continue;
+        figures->inside_crashes++;
+        figures->inside_outcome[pair->outcome]++;
+        figures->inside_valid += valid(pair);
+        figures->inside_treated_outside +=
+            crashes_again(pair) && !(pair->treated_inside[0] && pair->treated_inside[1]);
     }
 }
 
-// Share of an outcome among the valid pairs is a rate: of these pairs per valid pair.
-static cp_status figure_shares(const pairs *p, cp_counterfactual_figures *figures, cp_error *error)
+// Share of each outcome among the valid pairs, of all or of those inside with the baseline. An
+// outcome that never happened cannot show how it scatters: no interval trusts less than the others
+// do.
+static cp_status figure_shares(const pairs *p, bool of_inside, cp_interval *share, cp_error *error)
 {
     double *events = calloc(p->set->count + 1, sizeof *events);
     double *pairs_of = calloc(p->set->count + 1, sizeof *pairs_of);
     cp_status status = CP_OK;
+    double widest = 1.0;
     if (!events || !pairs_of)
         status = cp_fail_memory(error, "outcomes");
-    for (int outcome = CP_OUTCOME_CHANGED_OPPONENT; outcome < CP_OUTCOME_NO_OLC && status == CP_OK;
-         outcome++) {
-        for (size_t c = 0; c < p->set->count; c++)
-            events[c] = pairs_of[c] = 0.0;
-        for (size_t k = 0; k < p->count; k++) {
-            events[p->cluster[k]] += (int)p->pair[k]->outcome == outcome;
-            pairs_of[p->cluster[k]] += valid(p->pair[k]);
+    for (int turn = 0; turn < 2 && status == CP_OK; turn++) {
+        for (int outcome = CP_OUTCOME_CHANGED_OPPONENT; outcome < CP_OUTCOME_NO_OLC; outcome++) {
+            for (size_t c = 0; c < p->set->count; c++)
+                events[c] = pairs_of[c] = 0.0;
+            for (size_t k = 0; k < p->count; k++) {
+                if (of_inside && !inside(p, p->pair[k]))
+                    continue;
+                events[p->cluster[k]] += (int)p->pair[k]->outcome == outcome;
+                pairs_of[p->cluster[k]] += valid(p->pair[k]);
+            }
+            cp_exposure exposure = {p->set->count, events, pairs_of};
+            cp_widening widening;
+            share[outcome] =
+                cp_share_widened(&exposure, p->set->stratum, turn ? widest : 1.0, 0.95, &widening);
+            widest = fmax(widest, turn ? 1.0 : widening.factor_1);
         }
-        cp_exposure exposure = {p->set->count, events, pairs_of};
-        status = cp_rate_bootstrap(&exposure, p->set->stratum, p->data->seed,
-                                   &figures->share[outcome], error);
     }
     free(events);
     free(pairs_of);
@@ -100,8 +121,8 @@ static cp_status figure_shares(const pairs *p, cp_counterfactual_figures *figure
 }
 
 // Treated minus baseline over the valid pairs, or over those that crash again.
-static cp_status figure_severity(const pairs *p, bool olc, int which, cp_paired *paired,
-                                 cp_error *error)
+static cp_status figure_severity(const pairs *p, bool olc, int which, bool of_inside,
+                                 cp_paired *paired, cp_error *error)
 {
     double *difference = calloc(p->count + 1, sizeof *difference);
     size_t *cluster = calloc(p->count + 1, sizeof *cluster);
@@ -116,7 +137,8 @@ static cp_status figure_severity(const pairs *p, bool olc, int which, cp_paired 
         const cp_study_pair *pair = p->pair[k];
         const double *severity = olc ? pair->olc_g : pair->closing_speed_m_s;
         double change = severity[1] - severity[0];
-        if (isnan(change) || !(which == CP_PAIRED_ALL ? valid(pair) : crashes_again(pair)))
+        if (isnan(change) || !(which == CP_PAIRED_ALL ? valid(pair) : crashes_again(pair)) ||
+            (of_inside && !inside(p, pair)))
             continue;
         difference[count] = change;
         cluster[count++] = p->cluster[k];
@@ -158,6 +180,35 @@ static void sum_injuries(const pairs *p, const cp_study_risk *risk, double *base
     }
 }
 
+// Were the risk of every driver outside validity, or without a predictor, anything from 0 to 1.
+static void bound_benefit(const pairs *p, const cp_study_risk *risk, double bound[2])
+{
+    double known[2] = {0.0, 0.0}, open[2] = {0.0, 0.0};
+    for (size_t k = 0; k < p->count; k++) {
+        const cp_study_pair *pair = p->pair[k];
+        if (!valid(pair))
+            continue;
+        for (size_t role = 0; role < 2; role++) {
+            const cp_study_vehicle *vehicle = &p->data->vehicle[2 * pair->crash + role];
+            double risks[2] = {
+                cp_risk_probability(&risk->function, vehicle->predictor[risk->predictor]),
+                cp_risk_probability(&risk->function, pair->predictor[role][risk->predictor])};
+            bool is_known[2] = {vehicle->validity == 0, pair->treated_inside[role]};
+            if (pair->outcome == CP_OUTCOME_AVOIDED) {
+                risks[1] = 0.0;
+                is_known[1] = true;
+            }
+            for (int side = 0; side < 2; side++) {
+                bool counts = is_known[side] && !isnan(risks[side]);
+                known[side] += counts ? risks[side] : 0.0;
+                open[side] += !counts;
+            }
+        }
+    }
+    bound[0] = 1.0 - (known[1] + open[1]) / known[0];
+    bound[1] = 1.0 - known[1] / (known[0] + open[0]);
+}
+
 static cp_status figure_benefit(const pairs *p, cp_counterfactual_figures *figures, cp_error *error)
 {
     double *baseline = calloc(p->set->count + 1, sizeof *baseline);
@@ -177,6 +228,7 @@ static cp_status figure_benefit(const pairs *p, cp_counterfactual_figures *figur
         cp_interval interval;
         status = cp_rate_bootstrap(&ratio, p->set->stratum, p->data->seed, &interval, error);
         benefit->interval = (cp_interval){interval.status, 1.0 - interval.high, 1.0 - interval.low};
+        bound_benefit(p, &p->data->risk[k], benefit->bound);
     }
     free(baseline);
     free(treated);
@@ -190,28 +242,43 @@ static cp_status figure_treatment(pairs *p, cp_counterfactual_figures *figures, 
     figures->benefit = calloc(p->data->risk_count + 1, sizeof *figures->benefit);
     if (!figures->benefit)
         return cp_fail_memory(error, "expected injuries");
-    cp_status status = figure_shares(p, figures, error);
+    cp_status status = figure_shares(p, false, figures->share, error);
+    if (status == CP_OK)
+        status = figure_shares(p, true, figures->inside_share, error);
+    if (status == CP_OK)
+        status = figure_severity(p, true, CP_PAIRED_ALL, true, &figures->inside_olc_g, error);
     for (int which = 0; which < CP_PAIRED_COUNT && status == CP_OK; which++) {
-        status = figure_severity(p, true, which, &figures->olc_g[which], error);
+        status = figure_severity(p, true, which, false, &figures->olc_g[which], error);
         if (status == CP_OK)
-            status = figure_severity(p, false, which, &figures->closing_speed_m_s[which], error);
+            status =
+                figure_severity(p, false, which, false, &figures->closing_speed_m_s[which], error);
     }
     return status == CP_OK ? figure_benefit(p, figures, error) : status;
 }
 
+enum { P_OF_TREATMENT = 2 * CP_PAIRED_COUNT };
+
+static double *p_of(cp_counterfactual_figures *c, size_t number, bool adjusted)
+{
+    size_t which = number / 2;
+    if (number % 2 == 0)
+        return adjusted ? &c->p_holm[which] : &c->olc_g[which].signed_rank.p;
+    return adjusted ? &c->speed_p_holm[which] : &c->closing_speed_m_s[which].signed_rank.p;
+}
+
+// Every p-value that is printed is of one family.
 static cp_status adjust(cp_comparison *comparison, cp_error *error)
 {
-    double *p = calloc(comparison->counterfactual_count + 1, sizeof *p);
+    size_t count = P_OF_TREATMENT * comparison->counterfactual_count;
+    double *p = calloc(count + 1, sizeof *p);
     if (!p)
         return cp_fail_memory(error, "Holm's adjustment");
-    cp_status status = CP_OK;
-    for (int which = 0; which < CP_PAIRED_COUNT && status == CP_OK; which++) {
-        for (size_t k = 0; k < comparison->counterfactual_count; k++)
-            p[k] = comparison->counterfactual[k].olc_g[which].signed_rank.p;
-        status = cp_holm_adjust(p, comparison->counterfactual_count, error);
-        for (size_t k = 0; k < comparison->counterfactual_count; k++)
-            comparison->counterfactual[k].p_holm[which] = p[k];
-    }
+    cp_counterfactual_figures *c = comparison->counterfactual;
+    for (size_t k = 0; k < count; k++)
+        p[k] = *p_of(&c[k / P_OF_TREATMENT], k % P_OF_TREATMENT, false);
+    cp_status status = cp_holm_adjust(p, count, error);
+    for (size_t k = 0; k < count; k++)
+        *p_of(&c[k / P_OF_TREATMENT], k % P_OF_TREATMENT, true) = p[k];
     free(p);
     return status;
 }

@@ -3,6 +3,7 @@
 
 #define EXAMPLE_QUERIES(X)                                                                         \
     X(exposure_and_rates)                                                                          \
+    X(crashes_above_severity)                                                                      \
     X(olc_quantiles)                                                                               \
     X(olc_distribution)                                                                            \
     X(olc_against_closing_speed)                                                                   \

@@ -80,11 +80,13 @@ static cp_status film_crash(cp_store *store, const cp_study_data *data, size_t v
     return CP_OK;
 }
 
-// Vehicles of a variant with an OLC, by OLC; those inside validity only, if there is one.
+// Vehicles of a variant with an OLC, by OLC; those inside validity only, if there is one, as
+// of_inside tells.
 static size_t rank_vehicles(const cp_study_data *data, size_t variant, size_t *vehicle,
-                            double *olc_g, size_t *order)
+                            double *olc_g, size_t *order, bool *of_inside)
 {
     for (int inside = 1; inside >= 0; inside--) {
+        *of_inside = inside;
         size_t count = 0;
         for (size_t k = 0; k < data->vehicle_count; k++) {
             const cp_study_vehicle *v = &data->vehicle[k];
@@ -114,15 +116,21 @@ cp_status cp_gallery_json(cp_store *store, const cp_study_data *data, json_t **g
     if (!*gallery || !vehicle || !order || !olc_g)
         status = cp_fail_memory(error, "the gallery of a report");
     for (size_t v = 0; v < data->variant_count && status == CP_OK; v++) {
-        size_t count = rank_vehicles(data, v, vehicle, olc_g, order);
+        bool inside;
+        size_t count = rank_vehicles(data, v, vehicle, olc_g, order, &inside);
         if (count == 0 || json_array_size(*gallery) + 2 > CP_GALLERY_MAX)
             continue;
         size_t middle = order[(count - 1) / 2], highest = order[count - 1];
-        status = film_crash(store, data, vehicle[middle], "the median OLC of its variant", *gallery,
-                            error);
+        status = film_crash(store, data, vehicle[middle],
+                            inside ? "the median OLC of its vehicles inside the validated range"
+                                   : "the median OLC of its vehicles, all outside the range",
+                            *gallery, error);
         if (status == CP_OK && middle != highest)
-            status = film_crash(store, data, vehicle[highest], "the highest OLC of its variant",
-                                *gallery, error);
+            status =
+                film_crash(store, data, vehicle[highest],
+                           inside ? "the highest OLC of its vehicles inside the validated range"
+                                  : "the highest OLC of its vehicles, all outside the range",
+                           *gallery, error);
     }
     free(vehicle);
     free(order);

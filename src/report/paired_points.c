@@ -63,7 +63,7 @@ static columns crash_points(const cp_study_data *data, const bool *drawn)
 
 // ---- replications of one seed ----------------------------------------------------------------
 
-/* Known OLC of one crash type in one replication. */
+/* OLC of one crash type in one replication; a left-censored one is 0 g, below which none is. */
 typedef struct seed_sum {
     size_t vehicles[2]; /* all, inside */
     double olc_g[2];
@@ -90,12 +90,12 @@ static columns seed_points(const cp_study_data *data, seed_sum *sum)
     for (size_t k = 0; k < data->vehicle_count; k++) {
         const cp_study_vehicle *v = &data->vehicle[k];
         const cp_study_crash *crash = &data->crash[v->crash];
-        if (!v->frontal || v->olc != CP_OLC_KNOWN)
+        if (!v->frontal || v->olc == CP_OLC_FAILED)
             continue;
         seed_sum *own = &sum[crash->replication * data->crash_type_count + crash->crash_type];
         for (int scope = 0; scope < (v->validity == 0 ? 2 : 1); scope++) {
             own->vehicles[scope]++;
-            own->olc_g[scope] += v->olc_g;
+            own->olc_g[scope] += v->olc == CP_OLC_KNOWN ? v->olc_g : 0.0;
         }
     }
     columns c = columns_create(NAME, sizeof NAME / sizeof *NAME);

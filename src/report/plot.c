@@ -2,60 +2,44 @@
 #include "report/plot.h"
 
 #include "core/file.h"
+#include "core/scratch.h"
 #include "core/units.h"
 #include "report/gallery.h"
 #include "report/slice_sample.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-/* What every figure is drawn from. */
+/* What every figure is drawn from. Its data are blocks of rows, tabs between the columns, two empty
+ * lines between the blocks; gnuplot reads them as data, never as a part of its script. */
 typedef struct plot {
     cp_store *store;
     const cp_study_data *data;
     const cp_comparison *comparison;
     int scope;
     FILE *out;
-    size_t drawn; /* values written: 0 means nothing to show */
+    size_t drawn;       /* values written: 0 means nothing to show */
+    size_t block_count; /* blocks begun, or rows of a figure of intervals */
+    FILE *variants;     /* of each block or row, numbers with blanks between */
+    FILE *bars;         /* the rows that have an interval, likewise */
 } plot;
 
-// Colours as on the page: the baseline neutral, then Okabe and Ito's.
-static const char *const COLOUR[] = {"#4d5a68", "#0072b2", "#d55e00",
-                                     "#009e73", "#b0518e", "#b07d00"};
-static const int POINT[] = {7, 9, 5, 13, 11, 15};
+static const char NOTHING[] = "0\tNaN\tNaN\tNaN\n"; // a block needs a row
 
-static const char *colour(size_t variant)
-{
-    return COLOUR[variant % (sizeof COLOUR / sizeof *COLOUR)];
-}
-
-static int point(size_t variant)
-{
-    return POINT[variant % (sizeof POINT / sizeof *POINT)];
-}
-
-// Text inside double quotes of gnuplot, as plain as it stands.
+// A cell of text. gnuplot has no word for a quotation mark within one.
 static void put_text(FILE *out, const char *text)
 {
-    for (const char *c = text; *c; c++) {
-        if (*c == '"' || *c == '\\')
+    fputc('"', out);
+    for (; *text; text++) {
+        if (*text == '\\')
             fputc('\\', out);
-        fputc(*c == '\n' ? ' ' : *c, out);
+        unsigned char c = (unsigned char)(*text == '"' ? '\'' : *text);
+        fputc(c < ' ' || c == 0x7f ? ' ' : c, out);
     }
-}
-
-// The same where gnuplot takes the text for a format: labels of tics.
-static void put_label(FILE *out, const char *text)
-{
-    for (const char *c = text; *c; c++) {
-        const char one[2] = {*c, '\0'};
-        put_text(out, *c == '%' ? "%%" : one);
-    }
+    fputc('"', out);
 }
 
 static const char *name_of(const plot *p, size_t variant)
@@ -63,14 +47,15 @@ static const char *name_of(const plot *p, size_t variant)
     return p->data->variant[variant].name;
 }
 
-static void begin_block(plot *p, const char *name, size_t number)
+// The next block; the colour, the point and, by the head of its second column, the title of what is
+// drawn from it are the variant's.
+static void begin_block(plot *p, size_t variant, const char *title)
 {
-    fprintf(p->out, "$%s%zu << EOD\n", name, number);
-}
-
-static void end_block(plot *p)
-{
-    fputs("EOD\n", p->out);
+    fputs(p->block_count > 0 ? "\n\n\"\"\t" : "\"\"\t", p->out);
+    put_text(p->out, title);
+    fputs("\t\"\"\t\"\"\n", p->out);
+    fprintf(p->variants, "%zu ", variant);
+    p->block_count++;
 }
 
 // ---- rows with an interval: rates, differences, benefits
@@ -84,56 +69,37 @@ typedef struct row {
     cp_interval interval;
 } row;
 
+static bool closed(const row *r)
+{
+    return r->interval.status == CP_INTERVAL_VALUE && isfinite(r->interval.low) &&
+           isfinite(r->interval.high);
+}
+
 static void put_row(plot *p, const row *r)
 {
     if (isnan(r->value))
         return;
-    bool closed = r->interval.status == CP_INTERVAL_VALUE && isfinite(r->interval.low) &&
-                  isfinite(r->interval.high);
-    begin_block(p, "row", p->drawn);
-    fprintf(p->out, "%.9g %zu %.9g %.9g\n", r->value, p->drawn, closed ? r->interval.low : r->value,
-            closed ? r->interval.high : r->value);
-    end_block(p);
+    char label[512];
+    snprintf(label, sizeof label, "%.200s%s%.200s", name_of(p, r->variant), *r->label ? ": " : "",
+             r->label);
+    put_text(p->out, label);
+    fprintf(p->out, "\t%.9g\t%zu", r->value, p->drawn);
+    // No bar where there is no interval: none of no width is drawn.
+    if (closed(r)) {
+        fprintf(p->out, "\t%.9g\t%.9g\n", r->interval.low, r->interval.high);
+        fprintf(p->bars, "%zu ", p->drawn);
+    } else {
+        fputs("\tNaN\tNaN\n", p->out);
+    }
+    fprintf(p->variants, "%zu ", r->variant);
+    p->block_count++;
     p->drawn++;
 }
 
-static void end_rows(plot *p, const row *rows, size_t count, const char *axis, bool zero)
-{
-    fprintf(p->out,
-            "set xlabel \"%s\"\nset xrange [*<0:0<*]\nset yrange [%g:-0.5]\nset grid xtics lc rgb "
-            "\"#d9dde2\"\n"
-            "unset key\n",
-            axis, (double)p->drawn - 0.5);
-    if (zero)
-        fputs("set arrow from 0, graph 0 to 0, graph 1 nohead lc rgb \"#1c2430\"\n", p->out);
-    fputs("set ytics (", p->out);
-    size_t place = 0;
-    for (size_t k = 0; k < count; k++) {
-        if (isnan(rows[k].value))
-            continue;
-        fprintf(p->out, "%s\"", place ? ", " : "");
-        put_label(p->out, name_of(p, rows[k].variant));
-        fputs(*rows[k].label ? ": " : "", p->out);
-        put_label(p->out, rows[k].label);
-        fprintf(p->out, "\" %zu", place++);
-    }
-    fputs(")\nplot ", p->out);
-    place = 0;
-    for (size_t k = 0; k < count; k++) {
-        if (isnan(rows[k].value))
-            continue;
-        fprintf(p->out, "%s$row%zu using 1:2:3:4 with xerrorbars lw 2 pt %d ps 1 lc rgb \"%s\"",
-                place ? ", \\\n  " : "", place, point(rows[k].variant), colour(rows[k].variant));
-        place++;
-    }
-    fputc('\n', p->out);
-}
-
-static void write_rows(plot *p, const row *rows, size_t count, const char *axis, bool zero)
+static void write_rows(plot *p, const row *rows, size_t count)
 {
     for (size_t k = 0; k < count; k++)
         put_row(p, &rows[k]);
-    end_rows(p, rows, count, axis, zero);
 }
 
 static cp_status plot_rates(plot *p, cp_error *error)
@@ -145,12 +111,18 @@ static cp_status plot_rates(plot *p, cp_error *error)
     for (size_t k = 0; k < c->variant_count; k++) {
         const cp_variant_figures *v = &c->variant[k];
         bool bootstrap = v->rate_bootstrap.status == CP_INTERVAL_VALUE;
-        rows[k] = (row){v->variant, bootstrap ? "" : "Poisson", v->rate,
-                        bootstrap ? v->rate_bootstrap : v->rate_garwood};
+        rows[k] =
+            (row){v->variant, bootstrap ? "" : "Poisson, widened", v->rate, cp_rate_interval(v)};
     }
-    write_rows(p, rows, c->variant_count, "frontal crashes per 10^6 vehicle-km", false);
+    write_rows(p, rows, c->variant_count);
     free(rows);
     return CP_OK;
+}
+
+// A difference that censoring leaves open has no place on an axis.
+static double known(cp_estimate estimate)
+{
+    return estimate.relation == CP_EXACTLY ? estimate.value : NAN;
 }
 
 static cp_status plot_difference(plot *p, cp_error *error)
@@ -161,11 +133,11 @@ static cp_status plot_difference(plot *p, cp_error *error)
         return cp_fail_memory(error, "a figure");
     size_t count = 0;
     for (size_t k = 0; k < c->contrast_count; k++) {
-        const cp_contrast *o = &c->contrast[k].severity[CP_QUANTITY_OLC][p->scope];
+        const cp_contrast *o = &c->contrast[k].severity[CP_QUANTITY_OLC];
         size_t v = c->contrast[k].variant;
-        rows[count++] = (row){v, "median", o->median_difference.value, o->median_interval};
-        rows[count++] = (row){v, "mean", o->mean_difference.value, o->mean_interval};
-        rows[count++] = (row){v, "90 % quantile", o->p90_difference.value, o->p90_interval};
+        rows[count++] = (row){v, "median", known(o->median_difference), o->median_interval};
+        rows[count++] = (row){v, "mean", known(o->mean_difference), o->mean_interval};
+        rows[count++] = (row){v, "90 % quantile", known(o->p90_difference), o->p90_interval};
     }
     for (size_t k = 0; k < c->counterfactual_count; k++) {
         const cp_counterfactual_figures *f = &c->counterfactual[k];
@@ -174,7 +146,7 @@ static cp_status plot_difference(plot *p, cp_error *error)
         rows[count++] = (row){f->variant, "crashing", f->olc_g[CP_PAIRED_CRASHING].hodges_lehmann,
                               f->olc_g[CP_PAIRED_CRASHING].hodges_lehmann_interval};
     }
-    write_rows(p, rows, count, "change of OLC against the baseline, g", true);
+    write_rows(p, rows, count);
     free(rows);
     return CP_OK;
 }
@@ -195,8 +167,7 @@ static cp_status plot_benefit(plot *p, cp_error *error)
         bool pairs = k >= c->contrast_count;
         const cp_counterfactual_figures *f = &c->counterfactual[pairs ? k - c->contrast_count : 0];
         for (size_t r = 0; r < risks; r++, count++) {
-            const cp_benefit_figures *b =
-                pairs ? &f->benefit[r] : &c->contrast[k].benefit[p->scope][r];
+            const cp_benefit_figures *b = pairs ? &f->benefit[r] : &c->contrast[k].benefit[r];
             const cp_study_risk *risk = &p->data->risk[r];
             snprintf(label[count], sizeof label[count], "%.50s (%.50s)", risk->level, risk->name);
             rows[count] =
@@ -206,7 +177,7 @@ static cp_status plot_benefit(plot *p, cp_error *error)
                       {b->interval.status, 100.0 * b->interval.low, 100.0 * b->interval.high}};
         }
     }
-    write_rows(p, rows, count, "fewer expected injured drivers, %", true);
+    write_rows(p, rows, count);
     free(rows);
     free(label);
     return CP_OK;
@@ -214,22 +185,27 @@ static cp_status plot_benefit(plot *p, cp_error *error)
 
 // ---- curves ------------------------------------------------------------------------------------
 
+// A point of a distribution function and its band, if there is one.
+static void put_share(plot *p, double x, double share, double half_width)
+{
+    if (isnan(half_width))
+        fprintf(p->out, "%.6g\t%.6g\tNaN\tNaN\n", x, share);
+    else
+        fprintf(p->out, "%.6g\t%.6g\t%.6g\t%.6g\n", x, share, fmax(0.0, share - half_width),
+                fmin(1.0, share + half_width));
+}
+
 static void put_steps(plot *p, const cp_sample *sample, double half_width)
 {
     double n = (double)sample->count, before = 0.0;
     size_t censored = cp_sample_censored(sample);
-    double half = isnan(half_width) ? 0.0 : half_width;
     // The share before each step and after it, so that lines and areas are stairs.
     before = (double)censored / n;
-    fprintf(p->out, "0 %.6g %.6g %.6g\n", before, fmax(0.0, before - half),
-            fmin(1.0, before + half));
+    put_share(p, 0.0, before, half_width);
     for (size_t k = censored; k < sample->count; k++) {
         double after = (double)(k + 1) / n, x = sample->value[k];
-        for (int end = 0; end < 2; end++) {
-            double share = end ? after : before;
-            fprintf(p->out, "%.6g %.6g %.6g %.6g\n", x, share, fmax(0.0, share - half),
-                    fmin(1.0, share + half));
-        }
+        put_share(p, x, before, half_width);
+        put_share(p, x, after, half_width);
         before = after;
     }
     p->drawn += sample->count;
@@ -247,33 +223,44 @@ static cp_status plot_olc(plot *p, cp_error *error)
             status =
                 cp_slice_sample(p->data, &set, c->slice, p->scope, CP_QUANTITY_OLC, &sample, error);
         if (status == CP_OK) {
-            begin_block(p, "olc", k);
+            char title[512];
+            snprintf(title, sizeof title, "%.400s (n = %zu)", name_of(p, c->variant[k].variant),
+                     c->variant[k].description[CP_QUANTITY_OLC][p->scope].count);
+            begin_block(p, c->variant[k].variant, title);
             if (sample.count > 0)
                 put_steps(p, &sample, c->variant[k].olc_band[p->scope].half_width_1);
             else
-                fputs("0 NaN NaN NaN\n", p->out);
-            end_block(p);
+                fputs(NOTHING, p->out);
         }
         cp_sample_destroy(&sample);
         cp_replication_set_destroy(&set);
         if (status != CP_OK)
             return status;
     }
-    fputs("set xlabel \"OLC, g\"\nset ylabel \"share of vehicles\"\nset yrange [0:1]\n"
-          "set xrange [0:*]\nset key bottom right\nset grid lc rgb \"#d9dde2\"\nplot ",
-          p->out);
+    return CP_OK;
+}
+
+// Crashes above a severity per vehicle-km over that severity, with the band of single points.
+static cp_status plot_exceedance(plot *p, int what, cp_error *error)
+{
+    (void)error;
+    const cp_comparison *c = p->comparison;
+    double factor = what == CP_EXCEEDED_DELTA_V ? 3.6 : 1.0;
     for (size_t k = 0; k < c->variant_count; k++) {
-        size_t v = c->variant[k].variant;
-        if (c->variant[k].olc_band[p->scope].status == CP_INTERVAL_VALUE)
-            fprintf(p->out,
-                    "$olc%zu using 1:3:4 with filledcurves fs transparent solid 0.15 noborder lc "
-                    "rgb \"%s\" notitle, \\\n  ",
-                    k, colour(v));
-        fprintf(p->out, "$olc%zu using 1:2 with lines lw 2 lc rgb \"%s\" title \"", k, colour(v));
-        put_text(p->out, name_of(p, v));
-        fprintf(p->out, " (n = %zu)\"%s",
-                c->variant[k].description[CP_QUANTITY_OLC][p->scope].count,
-                k + 1 < c->variant_count ? ", \\\n  " : "\n");
+        char title[512];
+        snprintf(title, sizeof title, "%.400s, 95 %% at each point",
+                 name_of(p, c->variant[k].variant));
+        begin_block(p, c->variant[k].variant, title);
+        for (size_t j = 0; j < CP_EXCEEDANCE_POINTS; j++) {
+            const cp_exceedance *e = &c->variant[k].curve[what][j];
+            if (isnan(e->rate)) {
+                fputs(NOTHING, p->out);
+                break;
+            }
+            fprintf(p->out, "%.6g\t%.6g\t%.6g\t%.6g\n", factor * e->x, e->rate, e->interval.low,
+                    e->interval.high);
+            p->drawn += e->crashes;
+        }
     }
     return CP_OK;
 }
@@ -312,28 +299,18 @@ static cp_status plot_corridor(plot *p, cp_error *error)
         const json_t *p10 = json_object_get(corridor, "p10"),
                      *p50 = json_object_get(corridor, "p50"),
                      *p90 = json_object_get(corridor, "p90");
-        begin_block(p, "pulse", k);
+        char title[512];
+        snprintf(title, sizeof title, "%.400s, median, 10–90 %%",
+                 name_of(p, c->variant[k].variant));
+        begin_block(p, c->variant[k].variant, title);
         for (size_t t = 0; t < json_array_size(p50); t++, p->drawn++)
-            fprintf(p->out, "%g %g %g %g\n", 1e3 * CP_CORRIDOR_INTERVAL_S * (double)t,
+            fprintf(p->out, "%g\t%g\t%g\t%g\n", 1e3 * CP_CORRIDOR_INTERVAL_S * (double)t,
                     json_number_value(json_array_get(p50, t)),
                     json_number_value(json_array_get(p10, t)),
                     json_number_value(json_array_get(p90, t)));
         if (json_array_size(p50) == 0)
-            fputs("0 NaN NaN NaN\n", p->out);
-        end_block(p);
+            fputs(NOTHING, p->out);
         json_decref(corridor);
-    }
-    fputs("set xlabel \"time from first contact, ms\"\nset ylabel \"deceleration, g (CFC60)\"\n"
-          "set key top right\nset grid lc rgb \"#d9dde2\"\nplot ",
-          p->out);
-    for (size_t k = 0; k < c->variant_count; k++) {
-        size_t v = c->variant[k].variant;
-        fprintf(p->out,
-                "$pulse%zu using 1:3:4 with filledcurves fs transparent solid 0.15 noborder lc rgb "
-                "\"%s\" notitle, \\\n  $pulse%zu using 1:2 with lines lw 2 lc rgb \"%s\" title \"",
-                k, colour(v), k, colour(v));
-        put_text(p->out, name_of(p, v));
-        fprintf(p->out, ", median, 10–90 %%\"%s", k + 1 < c->variant_count ? ", \\\n  " : "\n");
     }
     cp_corridor_destroy(&pulses);
     free(chosen);
@@ -363,42 +340,16 @@ static cp_status plot_points(plot *p, cp_plot_kind kind, cp_error *error)
     (void)error;
     const cp_comparison *c = p->comparison;
     for (size_t k = 0; k < c->variant_count; k++) {
-        begin_block(p, "points", k);
-        fputs("NaN NaN NaN\n", p->out);
+        begin_block(p, c->variant[k].variant, name_of(p, c->variant[k].variant));
+        fputs(NOTHING, p->out);
         for (size_t j = 0; j < p->data->vehicle_count; j++) {
             double xyz[3];
             if (variant_of(p, j) != c->variant[k].variant || !in_slice(p, j) ||
                 !coordinates(p, kind, j, xyz))
                 continue;
-            fprintf(p->out, "%.6g %.6g %.6g\n", xyz[0], xyz[1], xyz[2]);
+            fprintf(p->out, "%.6g\t%.6g\t%.6g\n", xyz[0], xyz[1], xyz[2]);
             p->drawn++;
         }
-        end_block(p);
-    }
-    fputs("set grid lc rgb \"#d9dde2\"\n", p->out);
-    if (kind == CP_PLOT_SEVERITY)
-        fputs("set xlabel \"closing speed, km/h\"\nset ylabel \"OLC, g\"\nset key top left\n"
-              "set xrange [0:*]\nset yrange [0:*]\n",
-              p->out);
-    else if (kind == CP_PLOT_MAP)
-        fputs("set xlabel \"lateral offset, m\"\nset ylabel \"angle, degrees\"\nset cblabel "
-              "\"closing speed, km/h\"\nset palette defined (0 \"#fde725\", 0.33 \"#35b779\", 0.66 "
-              "\"#31688e\", 1 \"#440154\")\nset key outside top\n",
-              p->out);
-    else
-        fputs("set xlabel \"x, m\"\nset ylabel \"y, m\"\nset size ratio -1\nset key outside top\n",
-              p->out);
-    fputs("plot ", p->out);
-    for (size_t k = 0; k < c->variant_count; k++) {
-        size_t v = c->variant[k].variant;
-        fprintf(p->out, "$points%zu using 1:2%s with points pt %d ps 0.6 ", k,
-                kind == CP_PLOT_MAP ? ":3" : "", point(v));
-        if (kind == CP_PLOT_MAP)
-            fputs("lc palette title \"", p->out);
-        else
-            fprintf(p->out, "lc rgb \"%s\" title \"", colour(v));
-        put_text(p->out, name_of(p, v));
-        fprintf(p->out, "\"%s", k + 1 < c->variant_count ? ", \\\n  " : "\n");
     }
     return CP_OK;
 }
@@ -411,43 +362,32 @@ static cp_status plot_outcomes(plot *p, cp_error *error)
     static const cp_outcome ORDER[] = {CP_OUTCOME_AVOIDED,          CP_OUTCOME_MITIGATED,
                                        CP_OUTCOME_UNCHANGED,        CP_OUTCOME_AGGRAVATED,
                                        CP_OUTCOME_CHANGED_OPPONENT, CP_OUTCOME_INVALID};
-    static const char *const FILL[] = {"#009e73", "#0072b2", "#4d5a68",
-                                       "#d55e00", "#b0518e", "#d9dde2"};
     const cp_comparison *c = p->comparison;
     if (c->counterfactual_count == 0)
         return cp_fail(error, CP_BAD_INPUT,
                        "outcomes are of studies with the design counterfactual only");
-    fputs("$outcomes << EOD\n", p->out);
-    for (size_t k = 0; k < c->counterfactual_count; k++) {
-        fprintf(p->out, "\"");
-        put_text(p->out, name_of(p, c->counterfactual[k].variant));
-        fputc('"', p->out);
-        for (size_t o = 0; o < 6; o++)
-            fprintf(p->out, " %zu", c->counterfactual[k].outcome[ORDER[o]]);
-        fputc('\n', p->out);
-        p->drawn += c->counterfactual[k].crashes;
-    }
-    fputs(
-        "EOD\nset style data histograms\nset style histogram rowstacked\nset style fill solid 0.8 "
-        "noborder\nset boxwidth 0.6\nset ylabel \"frontal crashes of the baseline\"\nset key "
-        "outside right\nset yrange [0:*]\nplot ",
-        p->out);
+    fputs("\"\"", p->out);
     for (size_t o = 0; o < 6; o++) {
-        fprintf(p->out, "$outcomes using %zu%s lc rgb \"%s\" title \"", o + 2,
-                o == 0 ? ":xtic(1)" : "", FILL[o]);
+        fputs("\t\"", p->out);
         for (const char *t = cp_outcome_text(ORDER[o]); *t; t++)
             fputc(*t == '_' ? ' ' : *t, p->out);
-        fputs(o < 5 ? "\", \\\n  " : "\"\n", p->out);
+        fputc('"', p->out);
+    }
+    fputc('\n', p->out);
+    for (size_t k = 0; k < c->counterfactual_count; k++) {
+        put_text(p->out, name_of(p, c->counterfactual[k].variant));
+        for (size_t o = 0; o < 6; o++)
+            fprintf(p->out, "\t%zu", c->counterfactual[k].outcome[ORDER[o]]);
+        fputc('\n', p->out);
+        p->drawn += c->counterfactual[k].crashes;
     }
     return CP_OK;
 }
 
-// ---- script and gnuplot
-// --------------------------------------------------------------------------
+// ---- data, script and gnuplot ------------------------------------------------------------------
 
-static cp_status write_script(plot *p, cp_plot_kind kind, cp_error *error)
+static cp_status write_data(plot *p, cp_plot_kind kind, cp_error *error)
 {
-    fputs("set encoding utf8\nset border 3 lc rgb \"#58636f\"\nset tics nomirror\n", p->out);
     switch (kind) {
     case CP_PLOT_RATES:
         return plot_rates(p, error);
@@ -465,71 +405,173 @@ static cp_status write_script(plot *p, cp_plot_kind kind, cp_error *error)
         return plot_benefit(p, error);
     case CP_PLOT_CORRIDOR:
         return plot_corridor(p, error);
+    case CP_PLOT_ABOVE_OLC:
+        return plot_exceedance(p, CP_EXCEEDED_OLC, error);
+    case CP_PLOT_ABOVE_DELTA_V:
+        return plot_exceedance(p, CP_EXCEEDED_DELTA_V, error);
     case CP_PLOT_KIND_COUNT:
         break;
     }
     return cp_fail(error, CP_BAD_INPUT, "there is no such kind of plot");
 }
 
-cp_status cp_plot_script(cp_store *store, const cp_study_data *data,
-                         const cp_comparison *comparison, int scope, cp_plot_kind kind,
-                         char **script, cp_error *error)
+static cp_status write_streams(plot *p, cp_plot_kind kind, cp_error *error)
 {
-    *script = NULL;
-    size_t size = 0;
-    plot p = {.store = store, .data = data, .comparison = comparison, .scope = scope};
-    p.out = open_memstream(script, &size);
-    if (!p.out)
-        return cp_fail_memory(error, "a figure");
-    cp_status status = write_script(&p, kind, error);
-    int failed = ferror(p.out);
-    if ((fclose(p.out) != 0 || failed) && status == CP_OK)
+    cp_status status = write_data(p, kind, error);
+    if (status == CP_OK && (ferror(p->out) || ferror(p->variants) || ferror(p->bars)))
         status = cp_fail_memory(error, "a figure");
-    if (status == CP_OK && p.drawn == 0)
+    if (status == CP_OK && p->drawn == 0)
         status = cp_fail(error, CP_BAD_INPUT, "there is nothing to draw: no such crash");
+    return status;
+}
+
+// Data of a figure as text, and the numbers that its script begins with.
+static cp_status make(plot *p, cp_plot_kind kind, char **data, char **numbers, cp_error *error)
+{
+    size_t data_size = 0, variants_size = 0, bars_size = 0;
+    char *variants = NULL, *bars = NULL;
+    p->out = open_memstream(data, &data_size);
+    p->variants = open_memstream(&variants, &variants_size);
+    p->bars = open_memstream(&bars, &bars_size);
+    cp_status status = p->out && p->variants && p->bars ? write_streams(p, kind, error)
+                                                        : cp_fail_memory(error, "a figure");
+    int bad = p->out && fclose(p->out) != 0;
+    bad |= p->variants && fclose(p->variants) != 0;
+    bad |= p->bars && fclose(p->bars) != 0;
+    if (status == CP_OK && (bad || (*numbers = malloc(variants_size + bars_size + 64)) == NULL))
+        status = cp_fail_memory(error, "a figure");
+    if (status == CP_OK)
+        sprintf(*numbers, "n = %zu\nvariants = \"%s\"\nbars = \"%s\"\n", p->block_count,
+                variants != NULL ? variants : "", bars != NULL ? bars : "");
+    free(variants);
+    free(bars);
     if (status != CP_OK) {
-        free(*script);
-        *script = NULL;
+        free(*data);
+        *data = NULL;
     }
     return status;
 }
 
-// Run gnuplot on a script; what it says goes to stderr.
-static cp_status run_gnuplot(const char *terminal, const char *script, const char *path,
-                             cp_error *error)
+cp_status cp_plot_data(cp_store *store, const cp_study_data *study, const cp_comparison *comparison,
+                       int scope, cp_plot_kind kind, char **data, cp_error *error)
 {
-    char temporary[4096];
-    if ((size_t)snprintf(temporary, sizeof temporary, "%s.part", path) >= sizeof temporary)
-        return cp_fail(error, CP_BAD_INPUT, "%s: the path is too long", path);
-    // gnuplot would draw on stdout when it cannot write the file.
-    FILE *probe = fopen(temporary, "w");
-    if (!probe || fclose(probe) != 0)
-        return cp_fail(error, CP_IO_FAILED, "%s: %s", path, strerror(errno));
-    fflush(NULL);
-    FILE *gnuplot = popen("gnuplot", "w");
-    if (!gnuplot)
-        return cp_fail(error, CP_RUN_FAILED, "gnuplot cannot be started: %s", strerror(errno));
-    fprintf(gnuplot, "set terminal %s\nset output \"", terminal);
-    put_text(gnuplot, temporary);
-    fprintf(gnuplot, "\"\n%sunset output\n", script);
-    int code = pclose(gnuplot);
-    if (code == -1 || !WIFEXITED(code) || WEXITSTATUS(code) != 0) {
-        unlink(temporary);
-        if (code != -1 && WIFEXITED(code) && WEXITSTATUS(code) == 127)
-            return cp_fail(error, CP_BAD_INPUT,
-                           "gnuplot is missing; on Debian: apt-get install gnuplot-nox");
-        return cp_fail(error, CP_RUN_FAILED, "gnuplot failed on %s, see its words above", path);
-    }
-    if (rename(temporary, path) != 0) {
-        int why = errno;
-        unlink(temporary);
-        return cp_fail(error, CP_IO_FAILED, "%s: %s", path, strerror(why));
-    }
-    return CP_OK;
+    plot p = {.store = store, .data = study, .comparison = comparison, .scope = scope};
+    char *numbers = NULL;
+    *data = NULL;
+    cp_status status = make(&p, kind, data, &numbers, error);
+    free(numbers);
+    return status;
 }
 
-cp_status cp_plot_write(cp_store *store, const cp_study_data *data, const cp_comparison *comparison,
-                        int scope, cp_plot_kind kind, const char *path, cp_error *error)
+// Colours as on the page: the baseline neutral, then Okabe and Ito's.
+static const char BEGIN_SCRIPT[] = "set encoding utf8\n"
+                                   "set datafile separator \"\\t\"\n"
+                                   "set border 3 lc rgb \"#58636f\"\n"
+                                   "set tics nomirror\n"
+                                   "colours = \"#4d5a68 #0072b2 #d55e00 #009e73 #b0518e #b07d00\"\n"
+                                   "points = \"7 9 5 13 11 15\"\n"
+                                   "fills = \"#009e73 #0072b2 #4d5a68 #d55e00 #b0518e #d9dde2\"\n"
+                                   "number(k) = int(word(variants, k + 1)) % 6 + 1\n"
+                                   "colour(k) = word(colours, number(k))\n"
+                                   "point(k) = int(word(points, number(k)))\n"
+                                   "bar(j) = words(bars) < j ? 0 : int(word(bars, j))\n";
+
+#define GRID "set grid lc rgb \"#d9dde2\"\n"
+#define ROWS                                                                                       \
+    "set xrange [*<0:0<*]\nset yrange [n - 0.5:-0.5]\nset grid xtics lc rgb \"#d9dde2\"\n"         \
+    "unset key\n"                                                                                  \
+    "plot for [k=0:n-1] \"data\" every ::k::k using 2:3:ytic(1) with points "                      \
+    "pt point(k) ps 1 lc rgb colour(k), "                                                          \
+    "for [j=1:words(bars)] \"data\" every ::bar(j)::bar(j) using 2:3:4:5 with xerrorbars lw 2 "    \
+    "pt point(bar(j)) ps 1 lc rgb colour(bar(j))\n"
+#define ZERO "set arrow from 0, graph 0 to 0, graph 1 nohead lc rgb \"#1c2430\"\n"
+#define CURVES                                                                                     \
+    GRID "set key autotitle columnhead\n"                                                          \
+         "plot for [k=0:n-1] \"data\" index k using 1:3:4 with filledcurves fs transparent "       \
+         "solid 0.15 noborder lc rgb colour(k) notitle, "                                          \
+         "for [k=0:n-1] \"data\" index k using 1:2 with lines lw 2 lc rgb colour(k) "              \
+         "title columnhead(2)\n"
+#define ABOVE                                                                                      \
+    "set ylabel \"frontal crashes above it per 10^6 vehicle-km\"\n"                                \
+    "set xrange [0:*]\nset yrange [0:*]\nset key top right\n"
+#define POINTS(columns, ink)                                                                       \
+    GRID "set key autotitle columnhead\n"                                                          \
+         "plot for [k=0:n-1] \"data\" index k using " columns " with points pt point(k) ps 0.6 "   \
+         "lc " ink " title columnhead(2)\n"
+
+// What gnuplot does with the data of each kind. Nothing from a database or a command line is in it.
+static const char *const SCRIPT[CP_PLOT_KIND_COUNT] = {
+    [CP_PLOT_RATES] = "set xlabel \"frontal crashes per 10^6 vehicle-km\"\n" ROWS,
+    [CP_PLOT_DIFFERENCE] = "set xlabel \"change of OLC against the baseline, g\"\n" ZERO ROWS,
+    [CP_PLOT_BENEFIT] = "set xlabel \"fewer expected injured drivers, %\"\n" ZERO ROWS,
+    [CP_PLOT_OLC] = "set xlabel \"OLC, g\"\nset ylabel \"share of vehicles\"\nset yrange [0:1]\n"
+                    "set xrange [0:*]\nset key bottom right\n" CURVES,
+    [CP_PLOT_CORRIDOR] = "set xlabel \"time from first contact, ms\"\n"
+                         "set ylabel \"deceleration, g (CFC60)\"\nset key top right\n" CURVES,
+    [CP_PLOT_ABOVE_OLC] = "set xlabel \"OLC, g\"\n" ABOVE CURVES,
+    [CP_PLOT_ABOVE_DELTA_V] = "set xlabel \"delta-v, km/h\"\n" ABOVE CURVES,
+    [CP_PLOT_SEVERITY] =
+        "set xlabel \"closing speed, km/h\"\nset ylabel \"OLC, g\"\nset key top left\n"
+        "set xrange [0:*]\nset yrange [0:*]\n" POINTS("1:2", "rgb colour(k)"),
+    [CP_PLOT_MAP] = "set xlabel \"lateral offset, m\"\nset ylabel \"angle, degrees\"\n"
+                    "set cblabel \"closing speed, km/h\"\n"
+                    "set palette defined (0 \"#fde725\", 0.33 \"#35b779\", 0.66 \"#31688e\", "
+                    "1 \"#440154\")\nset key outside top\n" POINTS("1:2:3", "palette"),
+    [CP_PLOT_SITES] = "set xlabel \"x, m\"\nset ylabel \"y, m\"\nset size ratio -1\n"
+                      "set key outside top\n" POINTS("1:2", "rgb colour(k)"),
+    [CP_PLOT_OUTCOMES] =
+        "set style data histograms\nset style histogram rowstacked\n"
+        "set style fill solid 0.8 noborder\nset boxwidth 0.6\n"
+        "set ylabel \"frontal crashes of the baseline\"\nset key outside right\nset yrange [0:*]\n"
+        "plot for [o=2:7] \"data\" using o:xtic(1) lc rgb word(fills, o - 1) "
+        "title columnhead(o)\n",
+};
+
+// Let gnuplot work in a folder of its own, where all files have names of ours.
+static cp_status run_gnuplot(const char *terminal, const char *numbers, const char *script,
+                             const char *data, cp_scratch *scratch, cp_error *error)
+{
+    static const char *const WORDS[] = {"gnuplot", "--default-settings", "script", NULL};
+    const char *const parts[] = {"set terminal ", terminal,     "\nset output \"figure\"\n",
+                                 numbers,         BEGIN_SCRIPT, script,
+                                 "unset output\n"};
+    int code = 0;
+    cp_status status =
+        cp_scratch_write(scratch, "script", parts, sizeof parts / sizeof *parts, error);
+    if (status == CP_OK)
+        status = cp_scratch_write(scratch, "data", &data, 1, error);
+    if (status == CP_OK)
+        status = cp_scratch_run(scratch, WORDS, &code, error);
+    if (status == CP_BAD_INPUT)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "gnuplot is missing; on Debian: apt-get install gnuplot-nox");
+    if (status == CP_OK && code != 0)
+        status = cp_fail(error, CP_RUN_FAILED, "gnuplot failed, see its words above");
+    return status;
+}
+
+static cp_status draw(const char *terminal, const char *numbers, const char *script,
+                      const char *data, const char *path, cp_error *error)
+{
+    cp_scratch scratch;
+    char *figure = NULL;
+    size_t size = 0;
+    cp_status status = cp_scratch_open(&scratch, error);
+    if (status != CP_OK)
+        return status;
+    status = run_gnuplot(terminal, numbers, script, data, &scratch, error);
+    if (status == CP_OK)
+        status = cp_scratch_read(&scratch, "figure", &figure, &size, error);
+    if (status == CP_OK)
+        status = cp_file_write(path, figure, size, error);
+    free(figure);
+    cp_scratch_close(&scratch);
+    return status;
+}
+
+cp_status cp_plot_write(cp_store *store, const cp_study_data *study,
+                        const cp_comparison *comparison, int scope, cp_plot_kind kind,
+                        const char *path, cp_error *error)
 {
     const char *ending = strrchr(path, '.');
     const char *terminal = NULL;
@@ -539,10 +581,12 @@ cp_status cp_plot_write(cp_store *store, const cp_study_data *data, const cp_com
         terminal = "pdfcairo size 16cm,10cm font \"Helvetica,11\" noenhanced";
     if (!terminal)
         return cp_fail(error, CP_BAD_INPUT, "%s: the file must end in .svg or .pdf", path);
-    char *script = NULL;
-    cp_status status = cp_plot_script(store, data, comparison, scope, kind, &script, error);
+    plot p = {.store = store, .data = study, .comparison = comparison, .scope = scope};
+    char *data = NULL, *numbers = NULL;
+    cp_status status = make(&p, kind, &data, &numbers, error);
     if (status == CP_OK)
-        status = run_gnuplot(terminal, script, path, error);
-    free(script);
+        status = draw(terminal, numbers, SCRIPT[kind], data, path, error);
+    free(numbers);
+    free(data);
     return status;
 }

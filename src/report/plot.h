@@ -17,7 +17,9 @@
     X(CP_PLOT_SITES, "sites", "where they crash, in the plane of the network")                     \
     X(CP_PLOT_OUTCOMES, "outcomes", "counterfactual outcomes of each treatment")                   \
     X(CP_PLOT_BENEFIT, "benefit", "benefit in expected injured drivers")                           \
-    X(CP_PLOT_CORRIDOR, "corridor", "pulse corridors of each variant")
+    X(CP_PLOT_CORRIDOR, "corridor", "pulse corridors of each variant")                             \
+    X(CP_PLOT_ABOVE_OLC, "above-olc", "crashes above an OLC per vehicle-km, over that OLC")        \
+    X(CP_PLOT_ABOVE_DELTA_V, "above-delta-v", "the same of delta-v")
 
 typedef enum cp_plot_kind {
 #define CP_PLOT_NAME(kind, name, what) kind,
@@ -26,17 +28,18 @@ typedef enum cp_plot_kind {
         CP_PLOT_KIND_COUNT
 } cp_plot_kind;
 
-/* Draw a comparison to path, whose ending says how: .svg or .pdf. store: of the pulses. Errors:
- * CP_BAD_INPUT for another ending, for nothing to draw, and when gnuplot is missing; CP_RUN_FAILED
- * with gnuplot's words; CP_IO_FAILED. */
-CP_MUST_CHECK cp_status cp_plot_write(cp_store *store, const cp_study_data *data,
+/* Draw a comparison to path, whose ending says how: .svg or .pdf. store: of the pulses. gnuplot
+ * gets a fixed script and the data in a file of their own: no text of a database or a command line
+ * is ever part of a script. Errors: CP_BAD_INPUT for another ending, for nothing to draw, and when
+ * gnuplot is missing; CP_RUN_FAILED with gnuplot's words on stderr; CP_IO_FAILED. */
+CP_MUST_CHECK cp_status cp_plot_write(cp_store *store, const cp_study_data *study,
                                       const cp_comparison *comparison, int scope, cp_plot_kind kind,
                                       const char *path, cp_error *error);
 
-/* The gnuplot script that does it, data inside, without the lines that name terminal and output;
- * the caller frees. Errors: as above. */
-CP_MUST_CHECK cp_status cp_plot_script(cp_store *store, const cp_study_data *data,
-                                       const cp_comparison *comparison, int scope,
-                                       cp_plot_kind kind, char **script, cp_error *error);
+/* The data that are drawn: rows of cells with tabs between, texts in double quotes, two empty lines
+ * between the variants; the caller frees. Errors: as above. */
+CP_MUST_CHECK cp_status cp_plot_data(cp_store *store, const cp_study_data *study,
+                                     const cp_comparison *comparison, int scope, cp_plot_kind kind,
+                                     char **data, cp_error *error);
 
 #endif

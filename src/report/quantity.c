@@ -65,6 +65,12 @@ static cp_quantity *add(const writer *w, const char *name, const char *label, in
     return q;
 }
 
+// The row so many from the end.
+static cp_quantity *last(cp_quantities *list, size_t back)
+{
+    return list->failed ? &list->spare : &list->row[list->count - back];
+}
+
 static void add_interval(const writer *w, const char *name, const char *label, int digits,
                          cp_estimate estimate, const char *kind, cp_interval interval)
 {
@@ -104,11 +110,13 @@ static const struct {
 
 // ---- figures of a variant --------------------------------------------------------------------
 
-static void add_description(const writer *w, int q, const cp_description *d)
+static void add_description(const writer *w, int q, const cp_description *d,
+                            const cp_interval *mean_interval)
 {
     char name[CP_QUANTITY_TEXT_SIZE];
     const char *of = QUANTITY[q].name, *unit = QUANTITY[q].unit;
-    bool whole = QUANTITY[q].whole;
+    // Side by side, those inside validity would be compared: the table has none of them.
+    bool whole = QUANTITY[q].whole, labelled = w->scope != CP_SCOPE_INSIDE;
     int digits = QUANTITY[q].digits;
     const writer count = {w->list, w->section, w->scope, 1.0};
     const struct {
@@ -117,22 +125,29 @@ static void add_description(const writer *w, int q, const cp_description *d)
         bool always;
         cp_estimate estimate;
     } rows[] = {
-        {"mean", "  mean", true, exactly(d->mean)},
-        {"sd", "  sd", false, exactly(d->sd)},
-        {"min", "  min", false, d->minimum},
-        {"q25", "  25 %", false, d->q25},
-        {"median", "  median", true, d->median},
-        {"q75", "  75 %", false, d->q75},
-        {"p90", "  90 %", true, d->p90},
-        {"p95", "  95 %", false, d->p95},
+        {"mean", "  mean", true, d->mean_of_all}, {"sd", "  sd", false, exactly(d->sd)},
+        {"min", "  min", false, d->minimum},      {"q25", "  25 %", false, d->q25},
+        {"median", "  median", true, d->median},  {"q75", "  75 %", false, d->q75},
+        {"p90", "  90 %", true, d->p90},          {"p95", "  95 %", false, d->p95},
         {"max", "  max", false, d->maximum},
     };
-    add(&count, named(name, "%s_n", of), whole ? "  n" : NULL, 0, counted(d->count));
-    add(&count, named(name, "%s_censored", of), whole ? "  left-censored" : NULL, 0,
+    add(&count, named(name, "%s_n", of), whole && labelled ? "  n" : NULL, 0, counted(d->count));
+    add(&count, named(name, "%s_censored", of), whole && labelled ? "  left-censored" : NULL, 0,
         counted(d->censored));
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         add(w, named(name, "%s_%s_%s", of, rows[k].part, unit),
-            whole || rows[k].always ? rows[k].label : NULL, digits, rows[k].estimate);
+            labelled && (whole || rows[k].always) ? rows[k].label : NULL, digits, rows[k].estimate);
+    if (mean_interval) {
+        cp_quantity *mean = last(w->list, sizeof rows / sizeof *rows);
+        mean->kind = "bootstrap";
+        mean->interval = *mean_interval;
+    }
+}
+
+// Counts taken for Poisson's, and whether their interval is widened by what they scatter more.
+static const char *widened_kind(const cp_widening *widening)
+{
+    return isnan(widening->dispersion_1) ? "poisson" : "poisson widened";
 }
 
 static void add_rates(const writer *w, const cp_variant_figures *v)
@@ -147,16 +162,52 @@ static void add_rates(const writer *w, const cp_variant_figures *v)
         counted(v->front_front_inside));
     add_interval(w, "frontal_crashes_per_million_km", "frontal crashes per 10^6 veh-km", 0,
                  exactly(v->rate), "bootstrap", v->rate_bootstrap);
-    add_interval(w, "frontal_crashes_per_million_km", NULL, 0, exactly(v->rate), "poisson",
-                 v->rate_garwood);
-    add(w, "dispersion", "  dispersion over replications", 2, exactly(v->dispersion_1));
+    add_interval(w, "frontal_crashes_per_million_km_widened", NULL, 0, exactly(v->rate),
+                 widened_kind(&v->rate_widening), v->rate_widened);
+    last(w->list, 1)->second = true;
+    add(w, "dispersion", "  dispersion over replications", 2,
+        exactly(v->rate_widening.dispersion_1));
     add(w, "frontal_crashes_per_million_km_half_width_1", "  half-width, share of the rate", 2,
         exactly(v->rate_precision.relative_1));
-    add(w, "replications_for_rate_within_10_percent", "  replications for +-10 %", 0,
+    add(w, "replications_for_rate_within_10_percent", "  replications in all for +-10 %", 0,
         exactly(v->rate_precision.replications_needed));
     add(w, "frontal_vehicles", "vehicles struck on the front", 0, counted(v->frontal_vehicles));
     add(w, "simulation_failed", "  crash simulation failed", 0, counted(v->simulation_failed));
     add(w, "share_inside_validity", "  share inside validity", 2, exactly(share));
+}
+
+/* How severities that are exceeded are called. */
+static const struct {
+    const char *unit; /* of the table */
+    double factor;    /* of the table over SI */
+    const char *label;
+} EXCEEDED[CP_EXCEEDED_COUNT] = {{"g", 1.0, "OLC"}, {"km_h", 3.6, "delta-v"}};
+
+// "olc_above_15_g".
+static const char *exceeded_name(int what, double x, char text[CP_QUANTITY_TEXT_SIZE])
+{
+    return named(text, "%s_above_%g_%s", CP_EXCEEDED_TEXT[what],
+                 round(x * EXCEEDED[what].factor * 1e6) / 1e6, EXCEEDED[what].unit);
+}
+
+static const char *exceeded_label(int what, double x, char text[CP_QUANTITY_TEXT_SIZE])
+{
+    return named(text, "frontal crashes above %s %g %s", EXCEEDED[what].label,
+                 round(x * EXCEEDED[what].factor * 1e6) / 1e6,
+                 what == CP_EXCEEDED_DELTA_V ? "km/h" : "g");
+}
+
+static void add_exceedance(const writer *w, int what, const cp_exceedance *e)
+{
+    char of[CP_QUANTITY_TEXT_SIZE], name[CP_QUANTITY_TEXT_SIZE], label[CP_QUANTITY_TEXT_SIZE];
+    exceeded_name(what, e->x, of);
+    add(w, named(name, "crashes_%.60s", of), exceeded_label(what, e->x, label), 0,
+        counted(e->crashes));
+    add_interval(w, named(name, "crashes_%.60s_per_million_km", of), "  per 10^6 veh-km", 0,
+                 exactly(e->rate), "poisson widened", e->interval);
+    add(w, named(name, "crashes_%.60s_at_least", of), "  at least, outside range unknown", 0,
+        counted(e->least));
+    add(w, named(name, "crashes_%.60s_at_most", of), "  at most", 0, counted(e->most));
 }
 
 static void add_injuries(const cp_study_data *data, writer w, const cp_injury_figures *injury)
@@ -169,8 +220,9 @@ static void add_injuries(const cp_study_data *data, writer w, const cp_injury_fi
             exactly(injury[k].expected));
         add_interval(
             &w, named(name, "expected_injured_per_million_km_%.30s_%.20s", risk->name, risk->level),
-            named(label, "  %.30s (%.30s)", risk->level, risk->name), 1, exactly(injury[k].rate),
-            "bootstrap", injury[k].rate_interval);
+            w.scope == CP_SCOPE_INSIDE ? NULL
+                                       : named(label, "  %.30s (%.30s)", risk->level, risk->name),
+            1, exactly(injury[k].rate), "bootstrap", injury[k].rate_interval);
     }
 }
 
@@ -179,34 +231,52 @@ void cp_quantities_of_variant(const cp_study_data *data, const cp_variant_figure
 {
     writer w = {list, NULL, -1, 1.0};
     add_rates(&w, figures);
+    for (int what = 0; what < CP_EXCEEDED_COUNT; what++)
+        add_exceedance(&w, what, &figures->above[what]);
     for (w.scope = 0; w.scope < CP_SCOPE_COUNT; w.scope++) {
         for (int q = 0; q < CP_QUANTITY_COUNT; q++) {
             w.section = QUANTITY[q].section;
             w.factor = QUANTITY[q].factor;
-            add_description(&w, q, &figures->description[q][w.scope]);
+            add_description(&w, q, &figures->description[q][w.scope],
+                            q == CP_QUANTITY_OLC ? &figures->olc_mean_interval[w.scope] : NULL);
             if (q != CP_QUANTITY_OLC)
                 continue;
-            add_interval(&w, "olc_mean_g", NULL, 1, exactly(figures->description[q][w.scope].mean),
-                         "bootstrap", figures->olc_mean_interval[w.scope]);
             add(&w, "olc_ecdf_band_half_width_1", NULL, 3,
                 exactly(figures->olc_band[w.scope].half_width_1));
-            add(&w, "replications_for_olc_mean_within_10_percent", "  replications for mean +-10 %",
-                0, exactly(figures->olc_mean_precision[w.scope].replications_needed));
+            add(&w, "replications_for_olc_mean_within_10_percent",
+                w.scope == CP_SCOPE_INSIDE ? NULL : "  replications in all for mean +-10 %", 0,
+                exactly(figures->olc_mean_precision[w.scope].replications_needed));
         }
         w.factor = 1.0;
         add_injuries(data, w, figures->injury[w.scope]);
     }
 }
 
+// A p-value, or why there is none.
+static void add_test(const writer *w, const char *name, const char *label, double p,
+                     cp_interval_status why)
+{
+    cp_quantity *q = add(w, name, label, 4, exactly(p));
+    q->missing = isnan(p) && why != CP_INTERVAL_VALUE ? cp_interval_status_text(why) : NULL;
+}
+
 // ---- figures of a contrast -------------------------------------------------------------------
 
-static void add_contrast(const writer *w, int q, const cp_contrast *c, double p_holm)
+static void add_contrast(const writer *w, int q, const cp_contrast_figures *figures)
 {
     char name[CP_QUANTITY_TEXT_SIZE];
+    const cp_contrast *c = &figures->severity[q];
     const char *of = QUANTITY[q].name, *unit = QUANTITY[q].unit;
     int digits = QUANTITY[q].digits;
     const writer pure = {w->list, w->section, w->scope, 1.0};
     bool whole = QUANTITY[q].whole;
+    static const char *const SIDE[] = {"baseline", "treatment"};
+    for (int g = 0; g < 2; g++) {
+        char label[CP_QUANTITY_TEXT_SIZE];
+        add(&pure, named(name, "%s_n_compared_%s", of, SIDE[g]), NULL, 0, counted(c->compared[g]));
+        add(w, named(name, "%s_median_%s_%s", of, SIDE[g], unit),
+            named(label, "  median, %s, same mix of scenarios", SIDE[g]), digits, c->median[g]);
+    }
     add_interval(w, named(name, "%s_median_difference_%s", of, unit), "  difference of medians",
                  digits, c->median_difference, "bootstrap", c->median_interval);
     add_interval(w, named(name, "%s_mean_difference_%s", of, unit), "  difference of means", digits,
@@ -214,16 +284,32 @@ static void add_contrast(const writer *w, int q, const cp_contrast *c, double p_
     add_interval(w, named(name, "%s_p90_difference_%s", of, unit),
                  whole ? "  difference of 90 % quantiles" : NULL, digits, c->p90_difference,
                  "bootstrap", c->p90_interval);
+    const cp_superiority *s = &c->superiority;
     add_interval(&pure, named(name, "%s_cliffs_delta", of), "  Cliff's delta", 2,
-                 exactly(c->cliffs_delta), "bootstrap", c->cliffs_delta_interval);
-    add(&pure, named(name, "%s_mann_whitney_u", of), NULL, 1, exactly(c->mann_whitney.statistic));
-    add(&pure, named(name, "%s_mann_whitney_p", of), "  p (Mann-Whitney)", 4,
-        exactly(c->mann_whitney.p));
-    add(&pure, named(name, "%s_mann_whitney_p_holm", of), "  p, Holm", 4, exactly(p_holm));
+                 exactly(s->cliffs_delta), "jackknife", s->interval);
+    if (q == CP_QUANTITY_OLC) {
+        const cp_superiority *bound = figures->olc_bound;
+        add_interval(&pure, "olc_cliffs_delta_at_least", "    at least, outside range unknown", 2,
+                     exactly(bound[0].cliffs_delta), "jackknife", bound[0].interval);
+        add_interval(&pure, "olc_cliffs_delta_at_most", "    at most", 2,
+                     exactly(bound[1].cliffs_delta), "jackknife", bound[1].interval);
+    }
+    add_test(&pure, named(name, "%s_mann_whitney_p", of), "  p (Mann-Whitney, studentised)", s->p,
+             s->status);
+    add(&pure, named(name, "%s_mann_whitney_p_holm", of), "  p, Holm", 4,
+        exactly(figures->severity_p_holm[q]));
     add(&pure, named(name, "%s_kolmogorov_smirnov_d", of),
-        whole ? "  largest distance of ECDFs" : NULL, 2, exactly(c->kolmogorov_smirnov.statistic));
-    add(&pure, named(name, "%s_kolmogorov_smirnov_p", of),
-        whole ? "  p (Kolmogorov-Smirnov)" : NULL, 4, exactly(c->kolmogorov_smirnov.p));
+        whole ? "  largest distance of ECDFs" : NULL, 2, exactly(c->distance));
+    add_test(&pure, named(name, "%s_kolmogorov_smirnov_p", of),
+             whole ? "  p (Kolmogorov-Smirnov, bootstrap)" : NULL, c->distance_p,
+             s->status == CP_INTERVAL_VALUE ? CP_INTERVAL_TOO_FEW_REPLICATIONS : s->status);
+    add(&pure, named(name, "%s_kolmogorov_smirnov_p_holm", of), whole ? "  p, Holm" : NULL, 4,
+        exactly(figures->distance_p_holm[q]));
+}
+
+static cp_estimate bounded(double bound)
+{
+    return exactly(isfinite(bound) ? bound : NAN);
 }
 
 static void add_benefits(const cp_study_data *data, const writer *w,
@@ -236,6 +322,10 @@ static void add_benefits(const cp_study_data *data, const writer *w,
         add_interval(&percent, named(name, "benefit_1_%.30s_%.30s", risk->name, risk->level),
                      named(label, "  %.30s (%.30s)", risk->level, risk->name), 1,
                      exactly(benefit[k].benefit_1), "bootstrap", benefit[k].interval);
+        add(&percent, named(name, "benefit_at_least_1_%.30s_%.30s", risk->name, risk->level),
+            "    at least, outside range unknown", 1, bounded(benefit[k].bound[0]));
+        add(&percent, named(name, "benefit_at_most_1_%.30s_%.30s", risk->name, risk->level),
+            "    at most", 1, bounded(benefit[k].bound[1]));
     }
 }
 
@@ -243,23 +333,43 @@ void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figu
                                cp_quantities *list)
 {
     writer w = {list, NULL, -1, 1.0};
+    add(&w, "baseline_replications_compared", "replications compared, baseline", 0,
+        counted(figures->replications[0]));
+    add(&w, "replications_compared", "replications compared", 0, counted(figures->replications[1]));
+    add(&w, "replications_without_partner", "  finished without a partner, left out", 0,
+        counted(figures->partnerless[0] + figures->partnerless[1]));
     add_interval(&w, "rate_ratio", "rate ratio of frontal crashes", 2, exactly(figures->rate_ratio),
                  "bootstrap", figures->rate_ratio_bootstrap);
-    add_interval(&w, "rate_ratio", NULL, 2, exactly(figures->rate_ratio), "poisson",
-                 figures->rate_ratio_poisson);
+    add_interval(&w, "rate_ratio_widened", NULL, 2, exactly(figures->rate_ratio),
+                 widened_kind(&figures->rate_ratio_widening), figures->rate_ratio_widened);
+    last(w.list, 1)->second = true;
+    add(&w, "rate_ratio_dispersion", "  dispersion of the ratio", 2,
+        exactly(figures->rate_ratio_widening.dispersion_1));
     add(&w, "rate_p", "  p", 4, exactly(figures->rate_p));
     add(&w, "rate_p_holm", "  p, Holm", 4, exactly(figures->rate_p_holm));
-    add(&w, "replications_for_rate_ratio_within_10_percent", "  replications for +-10 %", 0,
+    add(&w, "replications_for_rate_ratio_within_10_percent", "  replications in all for +-10 %", 0,
         exactly(figures->rate_ratio_precision.replications_needed));
-    for (w.scope = 0; w.scope < CP_SCOPE_COUNT; w.scope++) {
-        for (int q = 0; q < CP_QUANTITIES_COMPARED; q++) {
-            w.section = QUANTITY[q].section;
-            w.factor = QUANTITY[q].factor;
-            add_contrast(&w, q, &figures->severity[q][w.scope],
-                         figures->severity_p_holm[q][w.scope]);
-        }
-        add_benefits(data, &w, figures->benefit[w.scope]);
+    for (int what = 0; what < CP_EXCEEDED_COUNT; what++) {
+        char of[CP_QUANTITY_TEXT_SIZE], name[CP_QUANTITY_TEXT_SIZE], label[CP_QUANTITY_TEXT_SIZE];
+        char text[CP_QUANTITY_TEXT_SIZE];
+        const cp_exceedance_ratio *r = &figures->above[what];
+        exceeded_name(what, r->x, of);
+        add_interval(&w, named(name, "rate_ratio_%.60s", of),
+                     named(label, "rate ratio of %.60s", exceeded_label(what, r->x, text)), 2,
+                     exactly(r->ratio), "poisson widened", r->interval);
+        add(&w, named(name, "rate_ratio_%.60s_at_least", of), "    at least, outside range unknown",
+            2, bounded(r->bound[0]));
+        add(&w, named(name, "rate_ratio_%.60s_at_most", of), "    at most", 2,
+            bounded(r->bound[1]));
     }
+    w.scope = CP_SCOPE_ALL;
+    for (int q = 0; q < CP_QUANTITIES_COMPARED; q++) {
+        w.section = QUANTITY[q].section;
+        w.factor = QUANTITY[q].factor;
+        add_contrast(&w, q, figures);
+    }
+    w.factor = 1.0;
+    add_benefits(data, &w, figures->benefit);
 }
 
 // ---- figures of counterfactual pairs -----------------------------------------------------------
@@ -283,9 +393,30 @@ static void add_paired(const writer *w, const char *of, const char *unit, const 
         exactly(paired->signed_rank.statistic));
     add(&pure, named(name, "paired_%s_%s_signed_rank_p", of, which),
         "  p (signed rank, by replication)", 4, exactly(paired->signed_rank.p));
-    if (!isnan(p_holm))
-        add(&pure, named(name, "paired_%s_%s_signed_rank_p_holm", of, which), "  p, Holm", 4,
-            exactly(p_holm));
+    add(&pure, named(name, "paired_%s_%s_signed_rank_p_holm", of, which), "  p, Holm", 4,
+        exactly(p_holm));
+}
+
+// Of the crashes that were inside validity with the baseline, before any treatment.
+static void add_pairs_inside(const writer *w, const cp_counterfactual_figures *figures)
+{
+    char name[CP_QUANTITY_TEXT_SIZE], label[CP_QUANTITY_TEXT_SIZE];
+    writer in = *w;
+    in.section = "baseline crash inside validity";
+    add(&in, "inside_pairs", "  crashes", 0, counted(figures->inside_crashes));
+    add(&in, "inside_valid_pairs", "  valid pairs", 0, counted(figures->inside_valid));
+    add(&in, "inside_treated_outside", "  of these outside with the treatment", 0,
+        counted(figures->inside_treated_outside));
+    for (int o = CP_OUTCOME_CHANGED_OPPONENT; o < CP_OUTCOME_NO_OLC; o++) {
+        double valid = figures->inside_valid ? (double)figures->inside_valid : NAN;
+        add_interval(&in, named(name, "inside_share_%s_1", cp_outcome_text((cp_outcome)o)),
+                     named(label, "  share %s", cp_outcome_text((cp_outcome)o)), 2,
+                     exactly((double)figures->inside_outcome[o] / valid), "binomial widened",
+                     figures->inside_share[o]);
+    }
+    const cp_paired *olc = &figures->inside_olc_g;
+    add_interval(&in, "inside_paired_olc_hodges_lehmann_g", "  change of OLC, g, avoided = 0 g", 1,
+                 exactly(olc->hodges_lehmann), "bootstrap", olc->hodges_lehmann_interval);
 }
 
 void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_figures *figures,
@@ -302,15 +433,17 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
         double share = figures->valid ? (double)figures->outcome[o] / (double)figures->valid : NAN;
         add_interval(&w, named(name, "share_%s_1", cp_outcome_text((cp_outcome)o)),
                      named(label, "  share %s", cp_outcome_text((cp_outcome)o)), 2, exactly(share),
-                     "bootstrap", figures->share[o]);
+                     "binomial widened", figures->share[o]);
     }
+    add_pairs_inside(&w, figures);
     for (int o = 0; o <= CP_OUTCOME_NO_OLC; o++)
-        add(&w, named(name, "outcome_by_olc_%s", cp_outcome_text((cp_outcome)o)), NULL, 0,
+        add(&w, named(name, "outcome_by_olc_%s", cp_outcome_text((cp_outcome)o)),
+            o == CP_OUTCOME_AGGRAVATED ? "  aggravated by OLC" : NULL, 0,
             counted(figures->outcome_olc[o]));
     for (int r = CP_NULL_REPRODUCED + 1; r <= CP_NULL_NOT_REPRODUCED; r++)
         add(&w, named(name, "invalid_%s", cp_null_status_text((cp_null_status)r)), NULL, 0,
             counted(figures->reason[r]));
-    add(&w, "new_crashes", "new crashes between others", 0, exactly(figures->new_crashes));
+    add(&w, "new_crashes", "new crashes between others (vanished ones not counted)", 0, exactly(figures->new_crashes));
     static const char *const OLC[] = {"OLC, g, all valid pairs (avoided = 0 g)",
                                       "OLC, g, conditional on crashing"};
     static const char *const SPEED[] = {"closing speed, km/h, all valid pairs (avoided = 0)",
@@ -323,7 +456,7 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
     for (int which = 0; which < CP_PAIRED_COUNT; which++) {
         writer speed = {list, SPEED[which], -1, 3.6};
         add_paired(&speed, "closing_speed", "m_s", CP_PAIRED_TEXT[which],
-                   &figures->closing_speed_m_s[which], NAN);
+                   &figures->closing_speed_m_s[which], figures->speed_p_holm[which]);
     }
     w.section = NULL;
     add_benefits(data, &w, figures->benefit);
@@ -356,6 +489,8 @@ static cp_status append(stored *s, const char *group, const char *variant, const
         const cp_quantity *q = &list->row[k];
         bool interval = q->kind && q->interval.status == CP_INTERVAL_VALUE;
         const char *kind = NULL;
+        if (q->missing)
+            kind = q->missing;
         if (q->kind)
             kind = interval ? q->kind : cp_interval_status_text(q->interval.status);
         s->row[s->count++] = (cp_comparison_figure_row){

@@ -12,11 +12,13 @@
 typedef struct cp_quantity {
     char name[CP_QUANTITY_TEXT_SIZE];  /* with its unit, of CSV and database: "olc_median_g" */
     char label[CP_QUANTITY_TEXT_SIZE]; /* of the table; empty: not there */
+    bool second;                       /* another interval of the row above: no line of its own */
     const char *section;               /* heading of the table it belongs under; NULL: none */
     int scope;                         /* CP_SCOPE_..., -1: does not matter */
     int digits;                        /* of the table, after the point */
     double factor;                     /* table's unit over the value's: 3.6 for km/h */
-    const char *kind;                  /* of the interval: "bootstrap", "poisson"; NULL: none */
+    const char *kind;    /* of the interval: "bootstrap", "poisson widened", …; NULL: none */
+    const char *missing; /* why there is no value, of a test; NULL: nothing to say */
     cp_interval interval;
     cp_estimate estimate;
 } cp_quantity;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/slice_sample.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,9 +40,9 @@ bool cp_slice_has_frontal_crash(const cp_study_data *data, cp_slice slice,
            (chosen(slice, a + 1) && data->vehicle[a + 1].frontal);
 }
 
-// Cluster of a replication in a set, SIZE_MAX when it is not there; the set is ascending.
-static size_t cluster_of(const cp_replication_set *set, size_t replication)
+size_t cp_replication_set_cluster(const cp_replication_set *set, size_t replication)
 {
+    // The set is ascending.
     size_t low = 0, high = set->count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
@@ -78,7 +79,7 @@ cp_status cp_replication_set_create(const cp_study_data *data, cp_slice slice, s
     }
     for (size_t k = 0; k < data->crash_count; k++) {
         const cp_study_crash *crash = &data->crash[k];
-        size_t cluster = cluster_of(set, crash->replication);
+        size_t cluster = cp_replication_set_cluster(set, crash->replication);
         if (cluster != SIZE_MAX && cp_slice_has_frontal_crash(data, slice, crash))
             set->frontal_crashes[cluster]++;
     }
@@ -152,8 +153,19 @@ static double observation(const cp_study_vehicle *vehicle, cp_slice_quantity qua
     return vehicle->olc == CP_OLC_KNOWN ? vehicle->olc_g : -INFINITY;
 }
 
-cp_status cp_slice_sample(const cp_study_data *data, const cp_replication_set *set, cp_slice slice,
-                          int scope, cp_slice_quantity quantity, cp_sample *sample, cp_error *error)
+/* What a vehicle gives to a sample; NAN: nothing. */
+typedef double (*observe)(const cp_study_vehicle *vehicle, const void *context);
+
+// Whether a vehicle is of what a sample is about.
+static bool belongs(const cp_study_data *data, cp_slice slice, size_t vehicle)
+{
+    return data->vehicle[vehicle].frontal && chosen(slice, vehicle);
+}
+
+// per_crash: what both vehicles of a crash have in common counts once, for role a where it belongs.
+static cp_status collect(const cp_study_data *data, const cp_replication_set *set, cp_slice slice,
+                         bool per_crash, observe of, const void *context, cp_sample *sample,
+                         cp_error *error)
 {
     double *value = calloc(data->vehicle_count + 1, sizeof *value);
     size_t *cluster = calloc(data->vehicle_count + 1, sizeof *cluster);
@@ -166,10 +178,12 @@ cp_status cp_slice_sample(const cp_study_data *data, const cp_replication_set *s
     for (size_t k = 0; k < data->vehicle_count; k++) {
         const cp_study_vehicle *vehicle = &data->vehicle[k];
         const cp_study_crash *crash = &data->crash[vehicle->crash];
-        double seen = observation(vehicle, quantity);
-        size_t own = cluster_of(set, crash->replication);
-        if (own == SIZE_MAX || isnan(seen) || !vehicle->frontal || !chosen(slice, k) ||
-            !fits(data, slice, crash) || (scope == CP_SCOPE_INSIDE && vehicle->validity != 0))
+        double seen = of(vehicle, context);
+        size_t own = cp_replication_set_cluster(set, crash->replication);
+        if (own == SIZE_MAX || isnan(seen) || !belongs(data, slice, k) || !fits(data, slice, crash))
+            continue;
+        if (per_crash && k % 2 == 1 && belongs(data, slice, k - 1) &&
+            !isnan(of(&data->vehicle[k - 1], context)))
             continue;
         value[count] = seen;
         cluster[count++] = own;
@@ -182,6 +196,42 @@ done:
     return status;
 }
 
+/* A quantity within a scope. */
+typedef struct quantity_in_scope {
+    cp_slice_quantity quantity;
+    int scope;
+} quantity_in_scope;
+
+static double observe_quantity(const cp_study_vehicle *vehicle, const void *context)
+{
+    const quantity_in_scope *q = context;
+    return q->scope == CP_SCOPE_INSIDE && vehicle->validity != 0
+               ? NAN
+               : observation(vehicle, q->quantity);
+}
+
+cp_status cp_slice_sample(const cp_study_data *data, const cp_replication_set *set, cp_slice slice,
+                          int scope, cp_slice_quantity quantity, cp_sample *sample, cp_error *error)
+{
+    const quantity_in_scope q = {quantity, scope};
+    bool of_crash = quantity != CP_QUANTITY_OLC && quantity != CP_QUANTITY_DELTA_V;
+    return collect(data, set, slice, of_crash, observe_quantity, &q, sample, error);
+}
+
+static double observe_bound(const cp_study_vehicle *vehicle, const void *context)
+{
+    const bool *highest = context;
+    if (vehicle->validity != 0 || vehicle->olc == CP_OLC_FAILED)
+        return *highest ? DBL_MAX : -INFINITY;
+    return observation(vehicle, CP_QUANTITY_OLC);
+}
+
+cp_status cp_slice_bound(const cp_study_data *data, const cp_replication_set *set, cp_slice slice,
+                         bool highest, cp_sample *sample, cp_error *error)
+{
+    return collect(data, set, slice, false, observe_bound, &highest, sample, error);
+}
+
 void cp_slice_injuries(const cp_study_data *data, const cp_replication_set *set, cp_slice slice,
                        int scope, const cp_study_risk *risk, double *expected, size_t *drivers,
                        size_t *unknown)
@@ -192,7 +242,7 @@ void cp_slice_injuries(const cp_study_data *data, const cp_replication_set *set,
     for (size_t k = 0; k < data->vehicle_count; k++) {
         const cp_study_vehicle *vehicle = &data->vehicle[k];
         const cp_study_crash *crash = &data->crash[vehicle->crash];
-        size_t own = cluster_of(set, crash->replication);
+        size_t own = cp_replication_set_cluster(set, crash->replication);
         if (own == SIZE_MAX || !crash->frontal || !chosen(slice, k) || !fits(data, slice, crash) ||
             (scope == CP_SCOPE_INSIDE && vehicle->validity != 0))
             continue;

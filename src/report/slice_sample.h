@@ -29,6 +29,9 @@ CP_MUST_CHECK cp_status cp_replication_set_create(const cp_study_data *data, cp_
 /* A zero-initialised set is fine too. */
 void cp_replication_set_destroy(cp_replication_set *set);
 
+/* Cluster of a replication in a set; SIZE_MAX when it is not there. */
+size_t cp_replication_set_cluster(const cp_replication_set *set, size_t replication);
+
 /* Leave in both sets only replications with a partner: same scenario, number and seed. Cluster k
  * of a is then the partner of cluster k of b. */
 void cp_replication_set_match(const cp_study_data *data, cp_replication_set *a,
@@ -37,12 +40,31 @@ void cp_replication_set_match(const cp_study_data *data, cp_replication_set *a,
 /* Frontal crashes over vehicle-km; borrows from the set. */
 cp_exposure cp_replication_set_exposure(const cp_replication_set *set);
 
-/* A quantity of the frontally struck vehicles of the set's replications; scope is CP_SCOPE_... A
+/* A quantity of the frontally struck vehicles of the set's replications; scope is CP_SCOPE_... What
+ * is the same for both vehicles (closing speed, offset, angle) counts once a crash. A
  * failed crash simulation gives no observation of OLC and delta-v. The caller destroys. Error:
  * CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_slice_sample(const cp_study_data *data, const cp_replication_set *set,
                                         cp_slice slice, int scope, cp_slice_quantity quantity,
                                         cp_sample *sample, cp_error *error);
+
+/* OLC of the same vehicles with every one outside validity, or whose simulation failed, taken for
+ * below all others (highest false) or above them. The caller destroys. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_slice_bound(const cp_study_data *data, const cp_replication_set *set,
+                                       cp_slice slice, bool highest, cp_sample *sample,
+                                       cp_error *error);
+
+/* Crashes above a severity: curve and headline of a variant, headline of a contrast. Error:
+ * CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_exceedance_figure(const cp_study_data *data,
+                                             const cp_replication_set *set, cp_slice slice,
+                                             const cp_comparison_options *options,
+                                             cp_variant_figures *figures, cp_error *error);
+CP_MUST_CHECK cp_status cp_exceedance_contrast(const cp_study_data *data,
+                                               const cp_replication_set set[2], cp_slice slice,
+                                               const cp_resampling *resampling,
+                                               const cp_comparison_options *options,
+                                               cp_contrast_figures *figures, cp_error *error);
 
 /* Expected injured drivers of each replication of the set, written to expected[cluster]; counts of
  * drivers with and without a known predictor (may be NULL). */

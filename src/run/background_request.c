@@ -4,12 +4,10 @@
 #include "core/file.h"
 #include "run/child.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #define PATH_SIZE 4096
@@ -21,7 +19,6 @@ static cp_status run_worker(const cp_background_request *request, const char *re
     char seed[64], step_length[64], duration[64];
     cp_child child;
     cp_child_end end;
-    int wait_status = 0;
     cp_status status = cp_child_find_worker(request->worker_path, worker, sizeof worker, error);
     if (status != CP_OK)
         return status;
@@ -57,9 +54,7 @@ static cp_status run_worker(const cp_background_request *request, const char *re
     status = cp_child_start(worker, arguments, &child, error);
     if (status != CP_OK)
         return status;
-    while (waitpid(child.pid, &wait_status, 0) < 0 && errno == EINTR)
-        continue;
-    cp_child_collect(&child, wait_status, &end);
+    cp_child_wait(&child, request->time_limit_s > 0.0 ? request->time_limit_s : INFINITY, &end);
     if (end.exit_code == 0)
         return CP_OK;
     return cp_fail(error, end.exit_code == 2 ? CP_BAD_INPUT : CP_RUN_FAILED, "%s", end.reason);

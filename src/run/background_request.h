@@ -15,6 +15,7 @@ typedef struct cp_background_request {
     double step_length_s;    /* of a .sumocfg */
     double duration_s;       /* of a scenario: NAN: the study's */
     const char *db_path;     /* of the study: the worker stores the result there too; may be NULL */
+    double time_limit_s;     /* it has failed when it takes longer; 0: no limit */
     const char *worker_path; /* NULL: beside the running executable */
 } cp_background_request;
 

@@ -2,15 +2,19 @@
 #include "run/child.h"
 
 #include "core/progress.h"
+#include "core/scratch.h"
 #include "run/child_environment.h"
 #include "run/worker.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -100,7 +104,7 @@ cp_status cp_child_start(const char *program, const char *const *arguments, cp_c
 {
     int ends[2] = {-1, -1};
     *child = (cp_child){.report = -1, .started_s = cp_clock_s()};
-    child->messages = tmpfile();
+    child->messages = cp_scratch_file();
     int failed = child->messages == NULL || pipe(ends) != 0 ? errno : 0;
     if (failed == 0) {
         // None of ours reaches the other children.
@@ -204,4 +208,30 @@ void cp_child_kill(cp_child *child, const char *why, cp_child_end *end)
     char reason[CP_CHILD_REASON_SIZE];
     snprintf(reason, sizeof reason, "%.200s: %.3500s", why, end->reason);
     snprintf(end->reason, sizeof end->reason, "%s", reason);
+}
+
+void cp_child_wait(cp_child *child, double limit_s, cp_child_end *end)
+{
+    // A descriptor of the process is readable once it has ended.
+    struct pollfd ended = {.fd = (int)syscall(SYS_pidfd_open, child->pid, 0), .events = POLLIN};
+    bool is_over = ended.fd < 0; // a kernel without: wait however long it takes
+    while (!is_over) {
+        double left_s = child->started_s + limit_s - cp_clock_s();
+        if (left_s <= 0.0)
+            break;
+        int found = poll(&ended, 1, (int)fmin(ceil(1e3 * left_s), 3.6e6));
+        is_over = found > 0 || (found < 0 && errno != EINTR);
+    }
+    if (ended.fd >= 0)
+        close(ended.fd);
+    if (!is_over) {
+        char why[64];
+        snprintf(why, sizeof why, "no end after %.6g s", limit_s);
+        cp_child_kill(child, why, end);
+        return;
+    }
+    int wait_status = 0;
+    while (waitpid(child->pid, &wait_status, 0) < 0 && errno == EINTR)
+        continue;
+    cp_child_collect(child, wait_status, end);
 }

@@ -42,6 +42,10 @@ CP_MUST_CHECK cp_status cp_child_start(const char *program, const char *const *a
  * Its log lines ("crashpulse: ...") are passed on to our stderr. */
 void cp_child_collect(cp_child *child, int wait_status, cp_child_end *end);
 
+/* Wait for its end and collect it; one that takes longer than limit_s since its start (INFINITY:
+ * no limit) is killed, and says so. */
+void cp_child_wait(cp_child *child, double limit_s, cp_child_end *end);
+
 /* Kill it and wait for its end; why (may be NULL) goes in front of its last words: "no end after 10
  * s". */
 void cp_child_kill(cp_child *child, const char *why, cp_child_end *end);

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#define CRASHES_MAX ((size_t)1 << 20)
+#define CRASHES_MAX ((size_t)1 << 14)
 #define VEHICLES_MAX ((size_t)1 << 24)
 #define NEVER (-1e300)
 // When a copy is due (checkpoint.h). It is worth its cost when going on from the last one costs

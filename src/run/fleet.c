@@ -130,9 +130,10 @@ static cp_status load_of_type(const char *name, const char *in_file, void *conte
 static cp_status load_of_scenarios(cp_fleet *fleet, cp_error *error)
 {
     cp_status status = CP_OK;
-    for (size_t k = 0; status == CP_OK && k < fleet->study->scenario_count; k++)
-        status =
-            cp_scenario_models(fleet->study->scenarios[k].sumocfg_path, load_of_type, fleet, error);
+    for (size_t k = 0; status == CP_OK && k < fleet->study->scenario_count; k++) {
+        const cp_scenario_inputs inputs = cp_study_scenario_inputs(&fleet->study->scenarios[k]);
+        status = cp_scenario_models(&inputs, load_of_type, fleet, error);
+    }
     return status;
 }
 

@@ -4,6 +4,7 @@
 #include "core/log.h"
 #include "run/counterfactual.h"
 #include "run/crash_record.h"
+#include "run/probe_outputs.h"
 #include "run/simulation.h"
 
 #include <math.h>
@@ -287,6 +288,7 @@ cp_status cp_replication_probe(const cp_study *study, const cp_study_scenario *s
         if (status != CP_OK)
             cp_error_prefix(error, "variant %s: ", variant->name);
     }
+    cp_probe_outputs_delete(scenario->name);
     cp_simulation_end(&simulation);
 
     // Whatever keeps a scenario from starting is for its author to mend.

@@ -10,6 +10,7 @@
 #include "store/background_rows.h"
 #include "store/claim.h"
 #include "store/query.h"
+#include "study/controls_text.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -126,13 +127,10 @@ static cp_status probe_scenario(runner *run, const cp_study_scenario *scenario, 
                                NULL};
     cp_child child;
     cp_child_end end;
-    int wait_status = 0;
     cp_status status = cp_child_start(run->worker_path, arguments, &child, error);
     if (status != CP_OK)
         return status;
-    while (waitpid(child.pid, &wait_status, 0) < 0 && errno == EINTR)
-        continue;
-    cp_child_collect(&child, wait_status, &end);
+    cp_child_wait(&child, run->time_limit_s, &end);
     if (end.exit_code == 0)
         return CP_OK;
     return cp_fail(error, end.exit_code == 2 ? CP_BAD_INPUT : CP_RUN_FAILED,
@@ -493,6 +491,13 @@ static cp_status run_jobs(runner *run, cp_error *error)
 
 // ---- public --------------------------------------------------------------------------------
 
+// What is really run, and what is not as the files have it.
+static cp_status tell_inputs(const cp_study *study, cp_error *error)
+{
+    cp_controls_text_study(study, "crashpulse: ", stderr);
+    return cp_study_tell_options(study, error);
+}
+
 static cp_status conclude(runner *run, cp_error *error)
 {
     const cp_runner_summary *summary = run->summary;
@@ -526,6 +531,8 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
     if (options->jobs < 1)
         return cp_fail(error, CP_BAD_INPUT, "jobs must be at least 1");
     cp_status status = load_inputs(&run, error);
+    if (status == CP_OK && options->progress)
+        status = tell_inputs(&run.study, error);
     if (status == CP_OK)
         status = find_worker(&run, error);
     if (status == CP_OK)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/sumo_words.h"
 
+#include "study/sumo_configuration.h"
+
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -13,67 +15,68 @@ static const char TELEPORT_OPTION[] = "--time-to-teleport";
 // SUMO's default time before it teleports a waiting vehicle.
 #define TELEPORT_S 300.0
 
-// The prefix a scenario asks for in its options, as two words or one with '='; "" without.
-static const char *prefix_of(const cp_study_scenario *scenario)
-{
-    const size_t length = sizeof PREFIX_OPTION - 1;
-    const char *prefix = "";
-    for (size_t k = 0; k < scenario->sumo_option_count; k++) {
-        const char *word = scenario->sumo_options[k];
-        if (strncmp(word, PREFIX_OPTION, length) != 0)
-            continue;
-        if (word[length] == '=')
-            prefix = word + length + 1;
-        else if (word[length] == '\0' && k + 1 < scenario->sumo_option_count)
-            prefix = scenario->sumo_options[k + 1];
-    }
-    return prefix;
-}
-
-static bool has_option(const cp_study_scenario *scenario, const char *option)
-{
-    const size_t length = strlen(option);
-    for (size_t k = 0; k < scenario->sumo_option_count; k++) {
-        const char *word = scenario->sumo_options[k];
-        if (strncmp(word, option, length) == 0 && (word[length] == '=' || word[length] == '\0'))
-            return true;
-    }
-    return false;
-}
-
 static bool add(cp_sumo_words *words, const char *text)
 {
     words->word[words->count] = strdup(text);
     return words->word[words->count] != NULL && ++words->count > 0;
 }
 
+// The scenario's words but those that the bridge or the prefix below set: SUMO refuses an option
+// that comes twice.
+static bool add_scenario_words(const cp_study_scenario *scenario,
+                               const cp_sumo_configuration *configuration, cp_sumo_words *words)
+{
+    bool good = true;
+    for (size_t k = 0; good && k < configuration->count; k++) {
+        const cp_sumo_setting *setting = &configuration->setting[k];
+        const cp_sumo_rule *rule =
+            setting->option != NULL ? cp_sumo_rule_find(setting->option->name) : NULL;
+        bool is_ours = rule != NULL &&
+                       (rule->treatment == CP_SUMO_REPLACED || rule->treatment == CP_SUMO_JOINED);
+        for (size_t w = 0; good && !is_ours && w < setting->word_count; w++)
+            good = add(words, scenario->sumo_options[setting->word + w]);
+    }
+    return good;
+}
+
+// Prefix of one replication: what tells it from the others, then theirs without its folder.
+static void join_prefix(const cp_study_scenario *scenario, const cp_study_variant *variant,
+                        uint64_t seed, const char *theirs, char prefix[CP_SUMO_PREFIX_SIZE])
+{
+    const char *slash = strrchr(theirs, '/');
+    bool has_name = scenario->name != NULL;
+    snprintf(prefix, CP_SUMO_PREFIX_SIZE, "%s%s%s_%" PRIu64 "_%s", has_name ? scenario->name : "",
+             has_name ? "_" : "", variant->name != NULL ? variant->name : CP_SUMO_PROBE_NAME, seed,
+             slash != NULL ? slash + 1 : theirs);
+}
+
 cp_status cp_sumo_words_create(const cp_study_scenario *scenario, const cp_study_variant *variant,
                                uint64_t seed, double stay_s, cp_sumo_words *words, cp_error *error)
 {
-    const size_t length = sizeof PREFIX_OPTION - 1;
-    char prefix[512], teleport[32];
+    char prefix[CP_SUMO_PREFIX_SIZE], teleport[32];
+    cp_sumo_configuration configuration = {0};
     *words = (cp_sumo_words){.word = calloc(scenario->sumo_option_count + 4, sizeof(char *))};
-    bool good = words->word != NULL;
-    snprintf(prefix, sizeof prefix, "%s_%s_%" PRIu64 "_%.300s", scenario->name,
-             variant->name != NULL ? variant->name : "probe", seed, prefix_of(scenario));
-
-    // All words but a prefix of theirs, then the two together.
-    for (size_t k = 0; good && k < scenario->sumo_option_count; k++) {
-        const char *word = scenario->sumo_options[k];
-        bool is_prefix = strncmp(word, PREFIX_OPTION, length) == 0;
-        if (is_prefix && word[length] == '\0')
-            k++;
-        else if (!is_prefix || word[length] != '=')
-            good = add(words, word);
+    if (words->word == NULL)
+        return cp_fail_memory(error, "SUMO's options");
+    cp_status status =
+        cp_sumo_configuration_read(scenario->sumocfg_path, scenario->sumo_options,
+                                   scenario->sumo_option_count, &configuration, error);
+    if (status == CP_OK) {
+        const cp_sumo_setting *theirs = cp_sumo_configuration_find(&configuration, "output-prefix");
+        const cp_sumo_setting *set = cp_sumo_configuration_find(&configuration, "time-to-teleport");
+        join_prefix(scenario, variant, seed, theirs != NULL ? theirs->value : "", prefix);
+        snprintf(teleport, sizeof teleport, "%g", stay_s + TELEPORT_S);
+        bool good = add_scenario_words(scenario, &configuration, words) &&
+                    add(words, PREFIX_OPTION) && add(words, prefix);
+        if (good && stay_s > 0.0 && (set == NULL || set->line > 0))
+            good = add(words, TELEPORT_OPTION) && add(words, teleport);
+        if (!good)
+            status = cp_fail_memory(error, "SUMO's options");
     }
-    good = good && add(words, PREFIX_OPTION) && add(words, prefix);
-    snprintf(teleport, sizeof teleport, "%g", stay_s + TELEPORT_S);
-    if (good && stay_s > 0.0 && !has_option(scenario, TELEPORT_OPTION))
-        good = add(words, TELEPORT_OPTION) && add(words, teleport);
-    if (good)
-        return CP_OK;
-    cp_sumo_words_destroy(words);
-    return cp_fail_memory(error, "SUMO's options");
+    cp_sumo_configuration_destroy(&configuration);
+    if (status != CP_OK)
+        cp_sumo_words_destroy(words);
+    return status;
 }
 
 void cp_sumo_words_destroy(cp_sumo_words *words)

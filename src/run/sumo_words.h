@@ -4,20 +4,27 @@
 
 #include "study/study_file.h"
 
-/* The further SUMO options of one replication: those of its scenario, and an output prefix of its
- * own. Whatever files the .sumocfg or an option writes (tripinfo.xml), parallel replications write
- * each their own: left_turn_aeb_421632325_tripinfo.xml. A prefix the scenario gives follows ours.
+/* The further SUMO options of one replication: those of its scenario that are left to it
+ * (traffic/sumo_options.h), and an output prefix of its own. Whatever files the .sumocfg or an
+ * option writes (tripinfo.xml), parallel replications write each their own:
+ * left_turn_aeb_421632325_tripinfo.xml. A prefix that the
+ * scenario's options or its .sumocfg give follows ours, without its folder: SUMO puts that behind
+ * the folder of every output, so that out/TIME_ and out/trips.xml need a folder out/out.
  *
  * Where crashed cars stay (stay_s > 0), SUMO must neither teleport them nor set the cars that wait
  * behind them down in front: --time-to-teleport is stay_s + 300 s, unless the scenario's options
  * say otherwise. */
+
+#define CP_SUMO_PREFIX_SIZE 1024
+/* Stands for a variant's name in the prefix of a probe, whose files are not kept. */
+#define CP_SUMO_PROBE_NAME "@probe"
 
 typedef struct cp_sumo_words {
     char **word;
     size_t count;
 } cp_sumo_words;
 
-/* The caller destroys. Error: CP_NO_MEMORY. */
+/* The caller destroys. Errors: CP_BAD_INPUT for a .sumocfg that cannot be read; CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_sumo_words_create(const cp_study_scenario *scenario,
                                              const cp_study_variant *variant, uint64_t seed,
                                              double stay_s, cp_sumo_words *words, cp_error *error);

@@ -11,7 +11,6 @@
 #include "store/claim.h"
 #include "store/stored_crash.h"
 #include "study/plan.h"
-#include "study/scenario_files.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -189,8 +188,7 @@ cp_status cp_worker_background(const cp_background_job *job, cp_error *error)
                                          .seed = *job->seed,
                                          .step_length_s = job->step_length_s,
                                          .duration_s = job->duration_s};
-        cp_status loads = cp_scenario_loads_no_state(job->path, error);
-        return loads == CP_OK ? run_background(job, &options, "", error) : loads;
+        return run_background(job, &options, "", error);
     }
     cp_study study = {0};
     cp_status status = cp_study_load(job->path, &study, error);

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/log.h"
+#include "core/memory.h"
 #include "run/worker.h"
 
 #include <argp.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <jansson.h>
 #include <math.h>
 #include <signal.h>
 #include <stdbool.h>
@@ -157,6 +159,7 @@ int main(int argc, char **argv)
     worker_arguments arguments = {0};
     cp_error error = {0};
     int elsewhere = 0;
+    json_set_alloc_funcs(cp_memory_for_json, free); // or fields would be missing without a word
     if (argp_parse(&ARGP, argc, argv, 0, NULL, &arguments) != 0)
         return 2;
     if (!follow_parent(arguments.parent))

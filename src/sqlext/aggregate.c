@@ -175,10 +175,16 @@ int cp_sqlext_register_aggregates(sqlite3 *db)
     for (size_t k = 0; k < sizeof AGGREGATE / sizeof *AGGREGATE; k++) {
         const aggregate_type *type = &AGGREGATE[k];
         bool window = type->kind == MEDIAN || type->kind == QUANTILE;
-        for (int censored = 0; result == SQLITE_OK && censored <= 1; censored++)
-            result = sqlite3_create_window_function(
-                db, type->name, type->arguments + censored, flags, (void *)type, step, finish,
-                window ? value : NULL, window ? inverse : NULL, NULL);
+        char prefixed[64];
+        sqlite3_snprintf(sizeof prefixed, prefixed, CP_SQLEXT_PREFIX "%s", type->name);
+        const char *const names[] = {type->name, prefixed};
+        for (int censored = 0; censored <= 1; censored++) {
+            int first = cp_sqlext_has(db, type->name, type->arguments + censored) ? 1 : 0;
+            for (int n = first; result == SQLITE_OK && n < 2; n++)
+                result = sqlite3_create_window_function(
+                    db, names[n], type->arguments + censored, flags, (void *)type, step, finish,
+                    window ? value : NULL, window ? inverse : NULL, NULL);
+        }
     }
     return result;
 }

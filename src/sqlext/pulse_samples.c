@@ -235,5 +235,9 @@ int cp_sqlext_register_pulse_samples(sqlite3 *db)
                                           .xEof = at_end,
                                           .xColumn = column,
                                           .xRowid = row_id};
-    return sqlite3_create_module_v2(db, "pulse_samples", &MODULE, NULL, NULL);
+    int result = sqlite3_create_module_v2(db, "pulse_samples", &MODULE, NULL, NULL);
+    if (result == SQLITE_OK)
+        result =
+            sqlite3_create_module_v2(db, CP_SQLEXT_PREFIX "pulse_samples", &MODULE, NULL, NULL);
+    return result;
 }

@@ -156,9 +156,15 @@ int cp_sqlext_register_scalars(sqlite3 *db)
                    {"peak", 1, severity},  {"cfc", 2, cfc}};
     const int flags = SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS;
     int result = SQLITE_OK;
-    for (size_t k = 0; result == SQLITE_OK && k < sizeof SCALARS / sizeof *SCALARS; k++)
-        result = sqlite3_create_function_v2(db, SCALARS[k].name, SCALARS[k].count, flags,
-                                            (void *)SCALARS[k].name, SCALARS[k].function, NULL,
-                                            NULL, NULL);
+    for (size_t k = 0; result == SQLITE_OK && k < sizeof SCALARS / sizeof *SCALARS; k++) {
+        char prefixed[64];
+        sqlite3_snprintf(sizeof prefixed, prefixed, CP_SQLEXT_PREFIX "%s", SCALARS[k].name);
+        const char *const names[] = {SCALARS[k].name, prefixed};
+        int first = cp_sqlext_has(db, SCALARS[k].name, SCALARS[k].count) ? 1 : 0;
+        for (int n = first; result == SQLITE_OK && n < 2; n++)
+            result = sqlite3_create_function_v2(db, names[n], SCALARS[k].count, flags,
+                                                (void *)SCALARS[k].name, SCALARS[k].function, NULL,
+                                                NULL, NULL);
+    }
     return result;
 }

@@ -32,8 +32,9 @@ static double largest_distance(const collector *c, const unsigned *weight)
     return largest;
 }
 
-static void collect(void *context, const unsigned *weight)
+static void collect(void *context, const unsigned *weight, const unsigned *unused)
 {
+    (void)unused;
     collector *c = context;
     double distance = largest_distance(c, weight);
     if (!isnan(distance))
@@ -43,9 +44,13 @@ static void collect(void *context, const unsigned *weight)
 cp_status cp_band_of_ecdf(const cp_sample *sample, const cp_resampling *resampling, cp_band *band,
                           cp_error *error)
 {
-    *band = (cp_band){CP_INTERVAL_TOO_FEW_REPLICATIONS, NAN};
-    if (sample->cluster_count < CP_BOOTSTRAP_CLUSTERS_MIN)
+    *band = (cp_band){cp_bootstrap_allowed(resampling), NAN};
+    if (band->status != CP_INTERVAL_VALUE)
         return CP_OK;
+    if (cp_sample_too_few(sample)) {
+        band->status = CP_INTERVAL_TOO_FEW_CRASHES;
+        return CP_OK;
+    }
     band->status = CP_INTERVAL_UNDEFINED;
     size_t *size = calloc(sample->cluster_count + 1, sizeof *size);
     double *distance = calloc(resampling->repetitions + 1, sizeof *distance);
@@ -57,14 +62,13 @@ cp_status cp_band_of_ecdf(const cp_sample *sample, const cp_resampling *resampli
     for (size_t k = 0; k < sample->count; k++)
         size[sample->cluster[k]]++;
     collector c = {.sample = sample, .size = size, .distance = distance};
-    double freedom = 0.0;
-    status = cp_bootstrap_draws(resampling, collect, &c, &freedom, error);
+    double scale = INFINITY;
+    status = cp_bootstrap_draws(resampling, collect, &c, &scale, error);
     if (status == CP_OK && sample->count > 0 &&
-        (double)c.count >= 0.95 * (double)resampling->repetitions && freedom >= 1.0) {
+        (double)c.count >= 0.95 * (double)resampling->repetitions && isfinite(scale)) {
         gsl_sort(distance, 1, c.count);
         size_t rank = (size_t)ceil(resampling->level_1 * (double)(c.count + 1));
         rank = rank > c.count ? c.count : rank;
-        double scale = sqrt((double)sample->cluster_count / freedom);
         *band = (cp_band){CP_INTERVAL_VALUE, fmin(1.0, scale * distance[rank - 1])};
     }
 

@@ -80,6 +80,10 @@ static void draw(const strata *s, cp_rng_key key, unsigned *weight)
     }
 }
 
+/* Resamples that give the estimate again; with more of them their quantiles are not to be trusted.
+ */
+#define ALIKE_SHARE 0.5
+
 /* Everything the intervals need; group 1 shares group 0's weights when paired. */
 typedef struct plan {
     const cp_resampling *resampling;
@@ -116,8 +120,8 @@ static cp_status plan_create(const cp_resampling *resampling, cp_statistics stat
                 .count = count,
                 .context = context,
                 .group_count = clusters[1] && !resampling->paired ? 2 : 1};
-    p->estimate = calloc(count, sizeof *p->estimate);
-    p->value = calloc(count, sizeof *p->value);
+    p->estimate = calloc(count + 1, sizeof *p->estimate);
+    p->value = calloc(count + 1, sizeof *p->value);
     p->resampled = calloc(count * (resampling->repetitions + 1), sizeof *p->resampled);
     p->left_out = calloc(count * (clusters[0] + clusters[1] + 1), sizeof *p->left_out);
     for (size_t g = 0; g < 2; g++)
@@ -133,11 +137,15 @@ static cp_status plan_create(const cp_resampling *resampling, cp_statistics stat
     return CP_OK;
 }
 
-static void evaluate(plan *p, double *value)
+static const unsigned *weight_of_second(const plan *p)
 {
     const cp_resampling *r = p->resampling;
-    const unsigned *b = r->paired ? p->weight[0] : r->cluster_count[1] ? p->weight[1] : NULL;
-    p->statistics(p->weight[0], b, p->context, value);
+    return r->paired ? p->weight[0] : r->cluster_count[1] ? p->weight[1] : NULL;
+}
+
+static void evaluate(plan *p, double *value)
+{
+    p->statistics(p->weight[0], weight_of_second(p), p->context, value);
 }
 
 static void weights_to_one(plan *p)
@@ -166,12 +174,17 @@ static void jackknife(plan *p)
 }
 
 // Repetition r of group g has its own key, so neither order nor number of groups matters.
+static void draw_groups(plan *p, cp_rng_key seed, size_t r)
+{
+    for (size_t g = 0; g < p->group_count; g++)
+        draw(&p->group[g], cp_rng_key_number(cp_rng_key_number(seed, r), g), p->weight[g]);
+}
+
 static void resample(plan *p)
 {
     cp_rng_key seed = cp_rng_key_text(cp_rng_key_seed(p->resampling->seed), "bootstrap");
     for (size_t r = 0; r < p->resampling->repetitions; r++) {
-        for (size_t g = 0; g < p->group_count; g++)
-            draw(&p->group[g], cp_rng_key_number(cp_rng_key_number(seed, r), g), p->weight[g]);
+        draw_groups(p, seed, r);
         evaluate(p, p->value);
         for (size_t s = 0; s < p->count; s++)
             p->resampled[s * p->resampling->repetitions + r] = p->value[s];
@@ -230,9 +243,14 @@ static double reach(const plan *p)
         return gsl_cdf_ugaussian_Pinv(tail);
     double fewest = INFINITY, freedom = INFINITY;
     for (size_t g = 0; g < p->group_count; g++) {
-        double own = degrees_of_freedom(&p->group[g]);
+        double own = degrees_of_freedom(&p->group[g]), count = (double)p->group[g].count;
+        double informative = (double)p->resampling->informative[g];
+        if (informative > 0.0 && informative < count) {
+            own = fmax(1.0, own - (count - informative));
+            count = informative;
+        }
         if (own < freedom) {
-            fewest = (double)p->group[g].count;
+            fewest = count;
             freedom = own;
         }
     }
@@ -260,9 +278,13 @@ static cp_interval bca(const plan *p, size_t statistic)
         return undefined;
 
     // Bias correction: where the estimate stands among the resamples, ties counted half.
-    double below = 0.0;
-    for (size_t k = 0; k < count; k++)
+    double below = 0.0, same = 0.0, rounding = 1e-9 * fabs(estimate);
+    for (size_t k = 0; k < count; k++) {
         below += resampled[k] < estimate ? 1.0 : resampled[k] == estimate ? 0.5 : 0.0;
+        same += fabs(resampled[k] - estimate) <= rounding;
+    }
+    if (same > ALIKE_SHARE * (double)count)
+        return (cp_interval){CP_INTERVAL_ALL_ALIKE, NAN, NAN};
     double share = below / (double)count;
     if (!(share > 0.0 && share < 1.0))
         return undefined;
@@ -275,14 +297,36 @@ static cp_interval bca(const plan *p, size_t statistic)
                          bound(resampled, count, high)};
 }
 
+cp_interval_status cp_bootstrap_allowed(const cp_resampling *resampling)
+{
+    for (size_t g = 0; g < 2; g++) {
+        size_t count = resampling->cluster_count[g];
+        if (g == 1 && count == 0)
+            continue;
+        if (count < CP_BOOTSTRAP_CLUSTERS_MIN)
+            return CP_INTERVAL_TOO_FEW_REPLICATIONS;
+        // Clusters that are alone in their stratum come into every resample once. Strata stand
+        // together as a rule, so the neighbour tells at once.
+        const size_t *stratum = resampling->stratum[g];
+        for (size_t k = 0; stratum && k < count; k++) {
+            bool alone = (k == 0 || stratum[k - 1] != stratum[k]) &&
+                         (k + 1 == count || stratum[k + 1] != stratum[k]);
+            for (size_t other = 0; alone && other < count; other++)
+                alone = other == k || stratum[other] != stratum[k];
+            if (alone)
+                return CP_INTERVAL_TOO_FEW_REPLICATIONS;
+        }
+    }
+    return CP_INTERVAL_VALUE;
+}
+
 cp_status cp_bootstrap_many(const cp_resampling *resampling, cp_statistics statistics, size_t count,
                             const void *context, cp_interval *interval, cp_error *error)
 {
-    const size_t *clusters = resampling->cluster_count;
+    cp_interval_status allowed = cp_bootstrap_allowed(resampling);
     for (size_t s = 0; s < count; s++)
-        interval[s] = (cp_interval){CP_INTERVAL_TOO_FEW_REPLICATIONS, NAN, NAN};
-    if (clusters[0] < CP_BOOTSTRAP_CLUSTERS_MIN ||
-        (clusters[1] > 0 && clusters[1] < CP_BOOTSTRAP_CLUSTERS_MIN))
+        interval[s] = (cp_interval){allowed, NAN, NAN};
+    if (allowed != CP_INTERVAL_VALUE)
         return CP_OK;
 
     plan p;
@@ -320,26 +364,23 @@ cp_status cp_bootstrap(const cp_resampling *resampling, cp_statistic statistic, 
 }
 
 cp_status cp_bootstrap_draws(const cp_resampling *resampling, cp_draw draw_done, void *context,
-                             double *freedom, cp_error *error)
+                             double *scale, cp_error *error)
 {
-    size_t clusters = resampling->cluster_count[0];
-    strata s;
-    cp_status status = strata_create(clusters, resampling->stratum[0], &s, error);
-    if (status != CP_OK)
-        return status;
-    unsigned *weight = calloc(clusters + 1, sizeof *weight);
-    if (!weight) {
-        strata_destroy(&s);
-        return cp_fail_memory(error, "bootstrap");
-    }
+    plan p;
+    cp_status status = plan_create(resampling, NULL, 0, NULL, &p, error);
     cp_rng_key seed = cp_rng_key_text(cp_rng_key_seed(resampling->seed), "bootstrap");
-    for (size_t r = 0; r < resampling->repetitions; r++) {
-        draw(&s, cp_rng_key_number(cp_rng_key_number(seed, r), 0), weight);
-        draw_done(context, weight);
+    for (size_t r = 0; status == CP_OK && r < resampling->repetitions; r++) {
+        draw_groups(&p, seed, r);
+        draw_done(context, p.weight[0], weight_of_second(&p));
     }
-    if (freedom)
-        *freedom = degrees_of_freedom(&s);
-    free(weight);
-    strata_destroy(&s);
-    return CP_OK;
+    if (status == CP_OK && scale) {
+        *scale = 1.0;
+        for (size_t g = 0; g < p.group_count; g++) {
+            double freedom = degrees_of_freedom(&p.group[g]);
+            *scale =
+                fmax(*scale, freedom >= 1.0 ? sqrt((double)p.group[g].count / freedom) : INFINITY);
+        }
+    }
+    plan_destroy(&p);
+    return status;
 }

@@ -30,6 +30,18 @@ cp_estimate cp_estimate_difference(cp_estimate a, cp_estimate b)
     return (cp_estimate){relation, b.value - a.value};
 }
 
+static cp_estimate mean_of_all(const cp_sample *sample)
+{
+    size_t censored = cp_sample_censored(sample), values = sample->count - censored;
+    if (values == 0)
+        return (cp_estimate){CP_NO_VALUE, NAN};
+    double mean = gsl_stats_mean(sample->value + censored, 1, values);
+    if (censored == 0)
+        return (cp_estimate){CP_EXACTLY, mean};
+    double share = (double)censored / (double)sample->count;
+    return (cp_estimate){CP_LESS_THAN, (1.0 - share) * mean + share * sample->value[censored]};
+}
+
 cp_description cp_describe(const cp_sample *sample)
 {
     size_t censored = cp_sample_censored(sample);
@@ -39,6 +51,7 @@ cp_description cp_describe(const cp_sample *sample)
         .censored = censored,
         .mean = values ? gsl_stats_mean(sample->value + censored, 1, values) : NAN,
         .sd = values > 1 ? gsl_stats_sd(sample->value + censored, 1, values) : NAN,
+        .mean_of_all = mean_of_all(sample),
         .minimum = cp_describe_quantile(sample, 0.0),
         .q25 = cp_describe_quantile(sample, 0.25),
         .median = cp_describe_quantile(sample, 0.5),

@@ -21,10 +21,12 @@ cp_estimate cp_estimate_difference(cp_estimate a, cp_estimate b);
 
 /* The usual figures of a distribution. */
 typedef struct cp_description {
-    size_t count;    /* observations, censored ones included */
-    size_t censored; /* of these */
-    double mean;     /* of the count - censored values; NAN without any */
-    double sd;       /* likewise, n - 1; NAN under two */
+    size_t count;            /* observations, censored ones included */
+    size_t censored;         /* of these */
+    double mean;             /* of the count - censored values; NAN without any */
+    double sd;               /* likewise, n - 1; NAN under two */
+    cp_estimate mean_of_all; /* censored ones too: CP_LESS_THAN what it is with each of them at the
+                                smallest value, below which they lie */
     cp_estimate minimum;
     cp_estimate q25;
     cp_estimate median;

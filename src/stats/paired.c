@@ -160,9 +160,16 @@ cp_status cp_paired_compare(const cp_sample *differences, const cp_resampling *r
         paired->lower += differences->value[k] < 0.0;
         paired->higher += differences->value[k] > 0.0;
     }
+    if (cp_sample_too_few(differences)) {
+        paired->mean_interval = paired->hodges_lehmann_interval =
+            (cp_interval){CP_INTERVAL_TOO_FEW_CRASHES, NAN, NAN};
+        return signed_rank(differences, resampling->seed, 0, &paired->signed_rank, error);
+    }
+    cp_resampling informed = *resampling;
+    informed.informative[0] = cp_sample_informative(differences);
     cp_interval interval[2];
     cp_status status =
-        cp_bootstrap_many(resampling, paired_statistics, 2, differences, interval, error);
+        cp_bootstrap_many(&informed, paired_statistics, 2, differences, interval, error);
     if (status != CP_OK)
         return status;
     paired->mean_interval = interval[0];

@@ -26,8 +26,9 @@ typedef struct cp_paired {
                                         left out; p by flipping the sign of whole replications */
 } cp_paired;
 
-/* Everything about paired differences. resampling: cluster_count[0] is the sample's, [1] is 0.
- * permutations: of the test. Error: CP_NO_MEMORY. */
+/* Everything about paired differences; neither interval nor p of too few (cp_sample_too_few).
+ * resampling: cluster_count[0] is the sample's, [1] is 0. permutations: of the test. Error:
+ * CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_paired_compare(const cp_sample *differences,
                                           const cp_resampling *resampling, size_t permutations,
                                           cp_paired *paired, cp_error *error);

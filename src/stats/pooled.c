@@ -10,25 +10,34 @@ void cp_pooled_destroy(cp_pooled *pooled)
     free(pooled->value);
     free(pooled->cluster);
     free(pooled->group);
-    free(pooled->sum);
-    free(pooled->finite);
     free(pooled->size);
+    free(pooled->stratum);
+    free(pooled->factor);
     *pooled = (cp_pooled){0};
 }
 
-cp_status cp_pooled_create(const cp_sample *a, const cp_sample *b, cp_pooled *pooled,
-                           cp_error *error)
+cp_status cp_pooled_create(const cp_sample *a, const cp_sample *b, const size_t *stratum_a,
+                           const size_t *stratum_b, cp_pooled *pooled, cp_error *error)
 {
     size_t count = a->count + b->count, clusters = a->cluster_count + b->cluster_count;
-    *pooled = (cp_pooled){.sample = {a, b}, .count = count};
+    *pooled = (cp_pooled){.sample = {a, b}, .count = count, .strata = 1, .lowest = {NAN, NAN}};
     pooled->value = calloc(count + 1, sizeof *pooled->value);
     pooled->cluster = calloc(count + 1, sizeof *pooled->cluster);
     pooled->group = calloc(count + 1, sizeof *pooled->group);
-    pooled->sum = calloc(clusters + 1, sizeof *pooled->sum);
-    pooled->finite = calloc(clusters + 1, sizeof *pooled->finite);
     pooled->size = calloc(clusters + 1, sizeof *pooled->size);
-    if (!pooled->value || !pooled->cluster || !pooled->group || !pooled->sum || !pooled->finite ||
-        !pooled->size) {
+    pooled->stratum = calloc(clusters + 1, sizeof *pooled->stratum);
+    if (pooled->stratum) {
+        for (size_t c = 0; c < clusters; c++) {
+            bool of_a = c < a->cluster_count;
+            const size_t *stratum = of_a ? stratum_a : stratum_b;
+            size_t own = stratum ? stratum[of_a ? c : c - a->cluster_count] : 0;
+            pooled->stratum[c] = own;
+            pooled->strata = own >= pooled->strata ? own + 1 : pooled->strata;
+        }
+        pooled->factor = calloc(2 * pooled->strata, sizeof *pooled->factor);
+    }
+    if (!pooled->value || !pooled->cluster || !pooled->group || !pooled->size || !pooled->stratum ||
+        !pooled->factor) {
         cp_pooled_destroy(pooled);
         return cp_fail_memory(error, "two samples");
     }
@@ -41,14 +50,67 @@ cp_status cp_pooled_create(const cp_sample *a, const cp_sample *b, cp_pooled *po
         pooled->group[k] = !from_a;
     }
     for (size_t k = 0; k < count; k++) {
-        size_t c = pooled->cluster[k];
-        pooled->size[c]++;
-        if (isfinite(pooled->value[k])) {
-            pooled->sum[c] += pooled->value[k];
-            pooled->finite[c]++;
-        }
+        pooled->size[pooled->cluster[k]]++;
+        double *lowest = &pooled->lowest[pooled->group[k]];
+        if (isnan(*lowest) && isfinite(pooled->value[k]))
+            *lowest = pooled->value[k];
     }
     return CP_OK;
+}
+
+/* The two samples of a resample: how much each observation of a cluster counts. */
+typedef struct mix {
+    const cp_pooled *pooled;
+    const unsigned *weight[2];
+    double *factor[2]; /* of each stratum */
+    double total[2];   /* of all that count */
+} mix;
+
+static double times(const mix *m, size_t k)
+{
+    const cp_pooled *p = m->pooled;
+    unsigned char g = p->group[k];
+    size_t c = p->cluster[k], own = g ? c - p->sample[0]->cluster_count : c;
+    return (m->weight[g] ? m->weight[g][own] : 1.0) * m->factor[g][p->stratum[c]];
+}
+
+static mix mix_of(const cp_pooled *p, const unsigned *weight_a, const unsigned *weight_b)
+{
+    mix m = {
+        .pooled = p, .weight = {weight_a, weight_b}, .factor = {p->factor, p->factor + p->strata}};
+    for (size_t s = 0; s < 2 * p->strata; s++)
+        p->factor[s] = 0.0;
+    size_t offset[2] = {0, p->sample[0]->cluster_count};
+    for (int g = 0; g < 2; g++) {
+        for (size_t c = 0; c < p->sample[g]->cluster_count; c++) {
+            double size = (m.weight[g] ? m.weight[g][c] : 1.0) * p->size[offset[g] + c];
+            m.factor[g][p->stratum[offset[g] + c]] += size;
+            m.total[g] += size;
+        }
+    }
+    if (p->strata == 1) {
+        m.factor[0][0] = m.factor[1][0] = m.total[0] > 0.0 && m.total[1] > 0.0;
+        return m;
+    }
+
+    // From counts to weights; those of a sample add up to its observations in what is compared.
+    double sum = 0.0, compared[2] = {0.0, 0.0};
+    for (size_t s = 0; s < p->strata; s++) {
+        double a = m.factor[0][s], b = m.factor[1][s];
+        bool both = a > 0.0 && b > 0.0;
+        sum += both ? a * b / (a + b) : 0.0;
+        compared[0] += both ? a : 0.0;
+        compared[1] += both ? b : 0.0;
+    }
+    for (size_t s = 0; s < p->strata; s++) {
+        double a = m.factor[0][s], b = m.factor[1][s];
+        bool both = a > 0.0 && b > 0.0;
+        m.factor[0][s] = both ? b / (a + b) * compared[0] / sum : 0.0;
+        m.factor[1][s] = both ? a / (a + b) * compared[1] / sum : 0.0;
+    }
+    m.total[0] = compared[0];
+    m.total[1] = compared[1];
+    return m;
 }
 
 /* The two order statistics a quantile lies between (type 7), found while walking up. */
@@ -61,88 +123,127 @@ typedef struct picker {
 
 static picker picker_for(double total, double p)
 {
-    double place = p * (total - 1.0), lower = floor(place);
+    // Weights are sums of fractions: a rank that is a whole number but for rounding is one.
+    double place = p * (total - 1.0), whole = nearbyint(place);
+    if (fabs(place - whole) < 1e-9 * fmax(1.0, total))
+        place = whole;
+    double lower = floor(place);
     return (picker){.lower = lower, .share = place - lower, .low = NAN, .high = NAN};
 }
 
-// count observations of one value stand behind passed others.
+// count observations of one value stand behind passed others. An order statistic is the value in
+// the middle of its place, so that weights that are no whole numbers pull it to neither side.
 static void pick(picker *p, double passed, double count, double value)
 {
-    if (p->lower >= passed && p->lower < passed + count)
+    double middle = p->lower + 0.5, slack = 1e-9 * fmax(1.0, passed + count);
+    if (middle >= passed - slack && middle < passed + count - slack)
         p->low = value;
-    if (p->lower + 1.0 >= passed && p->lower + 1.0 < passed + count)
+    if (middle + 1.0 >= passed - slack && middle + 1.0 < passed + count - slack)
         p->high = value;
 }
 
 static double picked(const picker *p)
 {
     // Below lies no value to interpolate from: the quantile is censored too.
-    if (p->share <= 0.0 || isinf(p->low))
+    if (p->share <= 0.0 || isinf(p->low) || isnan(p->high))
         return p->low;
     return p->low + p->share * (p->high - p->low);
+}
+
+/* Everything one walk gives of a sample. */
+typedef struct figures {
+    double value[CP_POOLED_COUNT];
+    double finite_sum; /* of weighted values that are not censored */
+    double censored;   /* weight of the others */
+} figures;
+
+static void walk(const mix *m, figures of[2])
+{
+    const cp_pooled *p = m->pooled;
+    picker median[2] = {picker_for(m->total[0], 0.5), picker_for(m->total[1], 0.5)};
+    picker p90[2] = {picker_for(m->total[0], 0.9), picker_for(m->total[1], 0.9)};
+    double passed[2] = {0.0, 0.0};
+    of[0] = of[1] = (figures){{NAN, NAN, NAN}, 0.0, 0.0};
+    for (size_t begin = 0, end; begin < p->count; begin = end) {
+        double tied[2] = {0.0, 0.0}, value = p->value[begin];
+        for (end = begin; end < p->count && p->value[end] == value; end++)
+            tied[p->group[end]] += times(m, end);
+        for (size_t g = 0; g < 2; g++) {
+            pick(&median[g], passed[g], tied[g], value);
+            pick(&p90[g], passed[g], tied[g], value);
+            passed[g] += tied[g];
+            if (isinf(value))
+                of[g].censored += tied[g];
+            else
+                of[g].finite_sum += tied[g] * value;
+        }
+    }
+    for (size_t g = 0; g < 2; g++) {
+        if (m->total[g] <= 0.0)
+            continue;
+        of[g].value[CP_POOLED_MEAN] = of[g].censored > 0.0 ? NAN : of[g].finite_sum / m->total[g];
+        of[g].value[CP_POOLED_MEDIAN] = picked(&median[g]);
+        of[g].value[CP_POOLED_P90] = picked(&p90[g]);
+    }
 }
 
 void cp_pooled_differences(const cp_pooled *pooled, const unsigned *weight_a,
                            const unsigned *weight_b, double difference[CP_POOLED_COUNT])
 {
-    // Totals and means need the clusters only.
-    const unsigned *weight[2] = {weight_a, weight_b};
-    double total[2] = {0.0, 0.0}, sum[2] = {0.0, 0.0}, finite[2] = {0.0, 0.0};
-    size_t offset[2] = {0, pooled->sample[0]->cluster_count};
-    for (size_t g = 0; g < 2; g++) {
-        for (size_t c = 0; c < pooled->sample[g]->cluster_count; c++) {
-            double times = weight[g] ? weight[g][c] : 1.0;
-            total[g] += times * pooled->size[offset[g] + c];
-            sum[g] += times * pooled->sum[offset[g] + c];
-            finite[g] += times * pooled->finite[offset[g] + c];
-        }
-    }
-    difference[CP_POOLED_MEAN] = sum[1] / finite[1] - sum[0] / finite[0]; // 0 / 0 is NAN
-
-    // Ranks and quantiles in one walk; ties move together, a tie with the other group counts half.
-    picker median[2] = {picker_for(total[0], 0.5), picker_for(total[1], 0.5)};
-    picker p90[2] = {picker_for(total[0], 0.9), picker_for(total[1], 0.9)};
-    double passed[2] = {0.0, 0.0}, u = 0.0;
-    for (size_t begin = 0, end; begin < pooled->count; begin = end) {
-        double tied[2] = {0.0, 0.0}, value = pooled->value[begin];
-        for (end = begin; end < pooled->count && pooled->value[end] == value; end++) {
-            unsigned char g = pooled->group[end];
-            tied[g] += weight[g] ? weight[g][pooled->cluster[end] - offset[g]] : 1.0;
-        }
-        u += tied[1] * (passed[0] + 0.5 * tied[0]);
-        for (size_t g = 0; g < 2; g++) {
-            pick(&median[g], passed[g], tied[g], value);
-            pick(&p90[g], passed[g], tied[g], value);
-            passed[g] += tied[g];
-        }
-    }
+    mix m = mix_of(pooled, weight_a, weight_b);
+    figures of[2];
+    walk(&m, of);
     // Two censored quantiles: -INFINITY - -INFINITY is NAN, the difference does not exist.
-    difference[CP_POOLED_MEDIAN] = picked(&median[1]) - picked(&median[0]);
-    difference[CP_POOLED_P90] = picked(&p90[1]) - picked(&p90[0]);
-    difference[CP_POOLED_CLIFFS_DELTA] = 2.0 * u / (total[0] * total[1]) - 1.0;
+    for (int f = 0; f < CP_POOLED_COUNT; f++)
+        difference[f] = of[1].value[f] - of[0].value[f];
 }
 
-cp_pooled_ranks cp_pooled_rank(const cp_pooled *pooled, const unsigned char *label)
+cp_estimate cp_pooled_estimate(const cp_pooled *pooled, int sample, int figure)
 {
-    double total[2] = {0.0, 0.0};
-    size_t clusters = pooled->sample[0]->cluster_count + pooled->sample[1]->cluster_count;
-    for (size_t c = 0; c < clusters; c++)
-        total[label[c]] += pooled->size[c];
-    if (total[0] <= 0.0 || total[1] <= 0.0)
-        return (cp_pooled_ranks){NAN, NAN, NAN};
+    mix m = mix_of(pooled, NULL, NULL);
+    figures of[2];
+    walk(&m, of);
+    const figures *own = &of[sample];
+    double lowest = pooled->lowest[sample], value = own->value[figure];
+    if (m.total[sample] <= 0.0 || isnan(lowest))
+        return (cp_estimate){CP_NO_VALUE, NAN};
+    if (figure == CP_POOLED_MEAN && own->censored > 0.0)
+        return (cp_estimate){CP_LESS_THAN,
+                             (own->finite_sum + own->censored * lowest) / m.total[sample]};
+    return isinf(value) ? (cp_estimate){CP_LESS_THAN, lowest} : (cp_estimate){CP_EXACTLY, value};
+}
 
-    // Walk up the values; ties move together, a tie with the other group counts half.
-    cp_pooled_ranks ranks = {0.0, 0.0, 0.0};
-    double passed[2] = {0.0, 0.0};
-    for (size_t begin = 0, end; begin < pooled->count; begin = end) {
-        double tied[2] = {0.0, 0.0};
-        for (end = begin; end < pooled->count && pooled->value[end] == pooled->value[begin]; end++)
-            tied[label[pooled->cluster[end]]]++;
-        ranks.u += tied[1] * (passed[0] + 0.5 * tied[0]);
-        passed[0] += tied[0];
-        passed[1] += tied[1];
-        ranks.ks = fmax(ranks.ks, fabs(passed[0] / total[0] - passed[1] / total[1]));
+size_t cp_pooled_compared(const cp_pooled *pooled, int sample)
+{
+    return (size_t)llround(mix_of(pooled, NULL, NULL).total[sample]);
+}
+
+// Calls for the difference of the two functions after each value; ties move together.
+static double largest_distance(const mix *m, const double *centre, double *difference)
+{
+    const cp_pooled *p = m->pooled;
+    double passed[2] = {0.0, 0.0}, largest = 0.0;
+    for (size_t begin = 0, end; begin < p->count; begin = end) {
+        for (end = begin; end < p->count && p->value[end] == p->value[begin]; end++)
+            passed[p->group[end]] += times(m, end);
+        double apart = passed[1] / m->total[1] - passed[0] / m->total[0];
+        for (size_t k = begin; difference && k < end; k++)
+            difference[k] = apart;
+        largest = fmax(largest, fabs(apart - (centre ? centre[begin] : 0.0)));
     }
-    ranks.shift = fabs(ranks.u / (total[0] * total[1]) - 0.5);
-    return ranks;
+    return largest;
+}
+
+double cp_pooled_distance(const cp_pooled *pooled, const unsigned *weight_a,
+                          const unsigned *weight_b, const double *centre)
+{
+    mix m = mix_of(pooled, weight_a, weight_b);
+    return m.total[0] > 0.0 && m.total[1] > 0.0 ? largest_distance(&m, centre, NULL) : NAN;
+}
+
+void cp_pooled_centre(const cp_pooled *pooled, double *centre)
+{
+    mix m = mix_of(pooled, NULL, NULL);
+    if (m.total[0] > 0.0 && m.total[1] > 0.0)
+        largest_distance(&m, NULL, centre);
 }

@@ -55,12 +55,41 @@ void cp_sample_destroy(cp_sample *sample)
     *sample = (cp_sample){0};
 }
 
+size_t cp_sample_informative(const cp_sample *sample)
+{
+    // Without memory 0, which means all of them.
+    size_t informative = 0;
+    unsigned char *seen = calloc(sample->cluster_count + 1, 1);
+    for (size_t k = 0; seen && k < sample->count; k++) {
+        informative += !seen[sample->cluster[k]];
+        seen[sample->cluster[k]] = 1;
+    }
+    free(seen);
+    return informative;
+}
+
 size_t cp_sample_censored(const cp_sample *sample)
 {
     size_t censored = 0;
     while (censored < sample->count && isinf(sample->value[censored]))
         censored++;
     return censored;
+}
+
+bool cp_sample_too_few(const cp_sample *sample)
+{
+    if (sample->count < CP_SAMPLE_OBSERVATIONS_MIN)
+        return true;
+    // So few clusters are found by looking for each of them.
+    size_t found[CP_SAMPLE_CLUSTERS_MIN], there = 0;
+    for (size_t k = 0; k < sample->count && there < CP_SAMPLE_CLUSTERS_MIN; k++) {
+        bool known = false;
+        for (size_t f = 0; f < there; f++)
+            known |= found[f] == sample->cluster[k];
+        if (!known)
+            found[there++] = sample->cluster[k];
+    }
+    return there < CP_SAMPLE_CLUSTERS_MIN;
 }
 
 size_t cp_sample_weighted_count(const cp_sample *sample, const unsigned *weight)

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Observations that come in clusters: all values of one replication belong together, and
@@ -25,6 +26,17 @@ CP_MUST_CHECK cp_status cp_sample_create(const double *value, const size_t *clus
                                          size_t cluster_count, cp_sample *sample, cp_error *error);
 /* A zero-initialised sample is fine too. */
 void cp_sample_destroy(cp_sample *sample);
+
+/* Fewer observations than this, or fewer clusters that have any, are too few for an interval or a
+ * test: what resamples or jackknife show of their scatter cannot be trusted. */
+#define CP_SAMPLE_OBSERVATIONS_MIN 8
+#define CP_SAMPLE_CLUSTERS_MIN 5
+
+/* Whether a sample has too few of either. */
+bool cp_sample_too_few(const cp_sample *sample);
+
+/* Clusters that have an observation. */
+size_t cp_sample_informative(const cp_sample *sample);
 
 /* Number of censored observations. */
 size_t cp_sample_censored(const cp_sample *sample);

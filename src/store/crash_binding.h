@@ -8,7 +8,7 @@
 
 /* What crash_vehicle and counterfactual_vehicle have in common; for the files of this folder. */
 
-#define CP_CRASHES_MAX (1 << 20) /* per replication: room in the row id */
+#define CP_CRASHES_MAX (1 << 14) /* per replication: room in the row id, below 2^53 */
 
 /* Parameters 5 to 37: frontal, the columns from sumo_id to contact_side, validity, severity. The
  * text of validity is borrowed until the statement has run. */

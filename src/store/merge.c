@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 // What the study is: the same in all its parts, row by row.
 static const char *const STUDY_TABLE[] = {"study", "scenario", "variant", "vehicle_model",
@@ -158,7 +159,7 @@ static cp_status take_results(cp_store *store, cp_error *error)
     cp_status status = cp_statement_prepare(store, "reading the schema", RESULT_TABLES, &s, error);
     while (status == CP_OK && (status = cp_statement_row(&s, &row, error)) == CP_OK && row) {
         const char *owner =
-            sqlite3_column_int(s.handle, 1) ? "crash_id / 1048576" : "replication_id";
+            sqlite3_column_int(s.handle, 1) ? "crash_id / 16384" : "replication_id";
         status = run_sql(store, error,
                          "INSERT INTO main.\"%w\" SELECT * FROM part.\"%w\" WHERE %s IN (SELECT id "
                          "FROM temp.taken)",
@@ -271,10 +272,15 @@ static cp_status take_all(cp_store *store, const char *path, cp_merge_count *cou
 }
 
 // Look at the part as a database of its own first: whose it is, and its version.
-static cp_status check_part(const char *path, cp_error *error)
+static cp_status check_part(cp_store *store, const char *path, cp_error *error)
 {
     cp_store *part = NULL;
     int64_t studies = 0;
+    struct stat own, entry;
+    if (stat(cp_store_path(store), &own) == 0 && stat(path, &entry) == 0 &&
+        own.st_dev == entry.st_dev && own.st_ino == entry.st_ino)
+        return cp_fail(error, CP_BAD_INPUT, "%s: cannot be merged into itself (%s)", path,
+                       cp_store_path(store));
     cp_status status = cp_store_open(path, CP_STORE_READ, &part, error);
     if (status == CP_OK)
         status = cp_store_integer(part, "reading", "SELECT count(*) FROM study", &studies, error);
@@ -287,9 +293,13 @@ static cp_status check_part(const char *path, cp_error *error)
 cp_status cp_merge(cp_store *store, const char *path, cp_merge_count *count, cp_error *error)
 {
     *count = (cp_merge_count){0};
-    cp_status status = check_part(path, error);
+    cp_status status = check_part(store, path, error);
+    char *file_name = cp_store_file_name(path);
+    if (status == CP_OK && file_name == NULL)
+        status = cp_fail_memory(error, path);
     if (status == CP_OK)
-        status = run_sql(store, error, "ATTACH %Q AS part", path);
+        status = run_sql(store, error, "ATTACH %Q AS part", file_name);
+    free(file_name);
     if (status != CP_OK)
         return status;
     status = cp_store_begin(store, error);

@@ -12,7 +12,8 @@ int64_t cp_replication_row_id(const char *scenario, const char *variant, const c
 {
     char key[4096];
     snprintf(key, sizeof key, "%s|%s|%s|%" PRIu64, scenario, variant, sweep, seed);
-    return cp_hash_row_id(key);
+    // 39 bits: with 2^14 crashes below it an id is a whole number of a double.
+    return cp_hash_row_id(key) >> 3;
 }
 
 // ---- the plan beside what the database holds -----------------------------------------------
@@ -66,8 +67,13 @@ static const char DIFFERENCE[] =
     "FROM scenario AS o JOIN temp.planned_scenario AS n USING (id) WHERE id = ?1 UNION ALL "
     "SELECT 'scenario ' || n.name || ': driver_errors', o.driver_errors, n.driver_errors "
     "FROM scenario AS o JOIN temp.planned_scenario AS n USING (id) WHERE id = ?1 UNION ALL "
-    "SELECT 'scenario ' || n.name || ': files (SHA-256)', o.files, n.files "
-    "FROM scenario AS o JOIN temp.planned_scenario AS n USING (id) WHERE id = ?1 UNION ALL "
+    "SELECT 'scenario ' || n.name || ': SHA-256 of ' || f.key, f.value, "
+    "coalesce((SELECT value FROM json_each(n.files) WHERE key = f.key), 'not there') "
+    "FROM scenario AS o JOIN temp.planned_scenario AS n USING (id), json_each(o.files) AS f "
+    "WHERE n.id = ?1 UNION ALL "
+    "SELECT 'scenario ' || n.name || ': SHA-256 of ' || f.key, 'not there', f.value "
+    "FROM scenario AS o JOIN temp.planned_scenario AS n USING (id), json_each(n.files) AS f "
+    "WHERE n.id = ?1 AND f.key NOT IN (SELECT key FROM json_each(o.files)) UNION ALL "
     "SELECT 'variant ' || n.name || ': functions', o.functions, n.functions "
     "FROM variant AS o JOIN temp.planned_variant AS n USING (id) WHERE id = ?2 UNION ALL "
     // A counterfactual replication depends on all treatments.

@@ -79,7 +79,7 @@ static cp_status rewrite_views(cp_store *store, cp_error *error)
     return status;
 }
 
-cp_status cp_schema_refresh_views(cp_store *store, bool writable, cp_error *error)
+cp_status cp_schema_refresh_views(cp_store *store, bool are_there, bool writable, cp_error *error)
 {
     char hex[CP_HASH_TEXT_SIZE], sql[256];
     int64_t same = 0;
@@ -90,7 +90,7 @@ cp_status cp_schema_refresh_views(cp_store *store, bool writable, cp_error *erro
         "instr(sql, '%s') > 0",
         hex);
     cp_status status = cp_store_integer(store, "reading the views", sql, &same, error);
-    if (status != CP_OK || same)
+    if (status != CP_OK || (same && are_there))
         return status;
     return writable ? rewrite_views(store, error) : hide_views(store, error);
 }
@@ -145,11 +145,14 @@ cp_status cp_schema_migrate(cp_store *store, cp_error *error)
     cp_status status = cp_store_begin(store, error);
     if (status != CP_OK)
         return status;
+    // What a file of db/schema changes in the text of a table; by no other SQL.
+    sqlite3_db_config(cp_store_sqlite(store), SQLITE_DBCONFIG_DEFENSIVE, 0, NULL);
     status = migrate_locked(store, error);
     if (status == CP_OK)
         status = cp_store_commit(store, error);
     if (status != CP_OK)
         cp_store_rollback(store);
+    sqlite3_db_config(cp_store_sqlite(store), SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     return status;
 }
 

@@ -20,8 +20,10 @@ CP_MUST_CHECK cp_status cp_schema_migrate(cp_store *store, cp_error *error);
 
 /* See to it that queries find the views of this program, whatever program wrote those in the file:
  * they are written anew when writable, else hidden by temporary ones. Does nothing when they are
- * the same. Views of the user stay. Errors: CP_STORE_FAILED, CP_BUSY, CP_NO_MEMORY. */
-CP_MUST_CHECK cp_status cp_schema_refresh_views(cp_store *store, bool writable, cp_error *error);
+ * there (as cp_schema_match says) and marked as the same. Views of the user stay. Errors:
+ * CP_STORE_FAILED, CP_BUSY, CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_schema_refresh_views(cp_store *store, bool are_there, bool writable,
+                                                cp_error *error);
 
 /* Whose file it is and how old. version is 0 for an empty file. Errors: CP_BAD_INPUT for no
  * database, another program's, or one of a newer crashpulse. */

@@ -3,6 +3,7 @@
 
 #include "core/file.h"
 #include "store/schema.h"
+#include "store/schema_match.h"
 #include "store/store_sqlite.h"
 
 #include <errno.h>
@@ -18,6 +19,7 @@
 
 struct cp_store {
     char *path;
+    char *file_name; /* the same as SQLite takes it: ':memory:' and 'file:x' are names too */
     sqlite3 *handle;
     int in_transaction;
 };
@@ -32,6 +34,15 @@ const char *cp_store_path(const cp_store *store)
     return store->path;
 }
 
+char *cp_store_file_name(const char *path)
+{
+    bool clear = path[0] == '/' || path[0] == '.';
+    char *name = malloc(strlen(path) + 3);
+    if (name != NULL)
+        sprintf(name, "%s%s", clear ? "" : "./", path);
+    return name;
+}
+
 cp_status cp_store_fail(cp_store *store, cp_error *error, const char *what)
 {
     int code = sqlite3_errcode(store->handle) & 0xff;
@@ -40,7 +51,12 @@ cp_status cp_store_fail(cp_store *store, cp_error *error, const char *what)
         status = CP_BUSY;
     else if (code == SQLITE_NOMEM)
         status = CP_NO_MEMORY;
-    return cp_fail(error, status, "%s: %s: %s", store->path, what, sqlite3_errmsg(store->handle));
+    // SQLite says that input or output failed; the system, why: no space, no rights.
+    bool outside = code == SQLITE_IOERR || code == SQLITE_FULL || code == SQLITE_CANTOPEN;
+    int why = outside ? sqlite3_system_errno(store->handle) : 0;
+    return cp_fail(error, status, "%s: %s: %s%s%s", store->path, what,
+                   sqlite3_errmsg(store->handle), why != 0 ? ": " : "",
+                   why != 0 ? strerror(why) : "");
 }
 
 // ---- statements ----------------------------------------------------------------------------
@@ -202,11 +218,15 @@ void cp_store_rollback(cp_store *store)
 
 // ---- opening -------------------------------------------------------------------------------
 
-// Whose file it is and how old, before anything is changed in it.
-static cp_status check_version(cp_store *store, cp_store_mode mode, cp_error *error)
+// Whose file it is and how old, before anything is changed in it. views: whether those of this
+// program stand in it.
+static cp_status check_version(cp_store *store, cp_store_mode mode, bool *views, cp_error *error)
 {
     int version = 0;
+    *views = false;
     cp_status status = cp_schema_check(store, &version, error);
+    if (status == CP_OK && version > 0)
+        status = cp_schema_match(store, version, views, error);
     if (status != CP_OK || version == CP_STORE_VERSION)
         return status;
     if (version == 0 && mode != CP_STORE_CREATE)
@@ -216,7 +236,17 @@ static cp_status check_version(cp_store *store, cp_store_mode mode, cp_error *er
                        "%s: was written by an older crashpulse (schema version %d, this program "
                        "reads %d); 'crashpulse check --upgrade' brings it up to date",
                        store->path, version, CP_STORE_VERSION);
-    return cp_schema_migrate(store, error);
+    status = cp_schema_migrate(store, error);
+    *views = status == CP_OK;
+    return status;
+}
+
+static cp_status fail_opening(cp_store *store, int code, cp_error *error)
+{
+    if (store->handle == NULL || (code & 0xff) == SQLITE_NOMEM)
+        return cp_fail_memory(error, store->path);
+    return cp_fail(error, CP_BAD_INPUT, "%s: cannot be opened: %s", store->path,
+                   sqlite3_errmsg(store->handle));
 }
 
 // On a read-only disk SQLite cannot keep its log of readers: nobody writes there, so it need not.
@@ -234,8 +264,8 @@ static cp_status open_unchanging(cp_store *store, cp_error *error)
             store->path);
 
     // A file name within an URI: its special characters as %xx.
-    char *uri = sqlite3_mprintf("file:");
-    for (const char *c = store->path; *c != '\0' && uri != NULL; c++)
+    char *uri = sqlite3_mprintf(store->file_name[0] == '/' ? "file://" : "file:");
+    for (const char *c = store->file_name; *c != '\0' && uri != NULL; c++)
         uri = strchr("%?# ", *c) != NULL ? sqlite3_mprintf("%z%%%02x", uri, *c)
                                          : sqlite3_mprintf("%z%c", uri, *c);
     if (uri != NULL)
@@ -244,10 +274,7 @@ static cp_status open_unchanging(cp_store *store, cp_error *error)
         return cp_fail_memory(error, store->path);
     int result = sqlite3_open_v2(uri, &store->handle, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, NULL);
     sqlite3_free(uri);
-    return result == SQLITE_OK
-               ? CP_OK
-               : cp_fail(error, CP_BAD_INPUT, "%s: cannot be opened: %s", store->path,
-                         store->handle != NULL ? sqlite3_errmsg(store->handle) : "out of memory");
+    return result == SQLITE_OK ? CP_OK : fail_opening(store, result, error);
 }
 
 static cp_status open_file(cp_store *store, cp_store_mode mode, bool exists, cp_error *error)
@@ -262,9 +289,26 @@ static cp_status open_file(cp_store *store, cp_store_mode mode, bool exists, cp_
     int flags = mode == CP_STORE_READ ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
     if (mode == CP_STORE_CREATE)
         flags |= SQLITE_OPEN_CREATE;
-    if (sqlite3_open_v2(store->path, &store->handle, flags, NULL) != SQLITE_OK)
-        return cp_fail(error, CP_BAD_INPUT, "%s: cannot be opened: %s", store->path,
-                       store->handle != NULL ? sqlite3_errmsg(store->handle) : "out of memory");
+    if (sqlite3_open_v2(store->file_name, &store->handle, flags, NULL) != SQLITE_OK)
+        return fail_opening(store, sqlite3_errcode(store->handle), error);
+    return CP_OK;
+}
+
+// A database may come from anybody: its schema runs no function that reaches out, nothing writes
+// past SQL, and no value is larger than any of ours.
+static cp_status set_limits(cp_store *store, cp_store_mode mode, cp_error *error)
+{
+    enum { VALUE_BYTES_MAX = 256 << 20 };
+    int result = sqlite3_db_config(store->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+    // Our own checks of what is written take SQLite's JSON functions, which count as untrusted.
+    if (result == SQLITE_OK && mode == CP_STORE_READ)
+        result = sqlite3_db_config(store->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
+    if (result == SQLITE_OK && mode == CP_STORE_READ)
+        result = sqlite3_db_config(store->handle, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
+    if (result != SQLITE_OK)
+        return cp_store_fail(store, error, "setting it up");
+    sqlite3_limit(store->handle, SQLITE_LIMIT_LENGTH, VALUE_BYTES_MAX);
+    sqlite3_limit(store->handle, SQLITE_LIMIT_ATTACHED, 1);
     return CP_OK;
 }
 
@@ -281,16 +325,19 @@ static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *erro
     if (status != CP_OK)
         return status;
     sqlite3_busy_timeout(store->handle, BUSY_TIMEOUT_MS);
+    bool views = false;
+    status = set_limits(store, mode, error);
     // For new files only: rows of some hundred bytes, packed pulses among them, fill larger pages
     // better.
     if (mode == CP_STORE_CREATE)
         sqlite3_exec(store->handle, "PRAGMA page_size=8192", NULL, NULL, NULL);
-    status = check_version(store, mode, error);
+    if (status == CP_OK)
+        status = check_version(store, mode, &views, error);
     if (status == CP_OK && mode != CP_STORE_READ)
         status = cp_store_execute(store, "setting it up",
                                   "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL", error);
     if (status == CP_OK)
-        status = cp_schema_refresh_views(store, mode != CP_STORE_READ, error);
+        status = cp_schema_refresh_views(store, views, mode != CP_STORE_READ, error);
     if (status == CP_OK)
         status = cp_store_execute(store, "setting it up", "PRAGMA foreign_keys=ON", error);
 
@@ -307,10 +354,12 @@ cp_status cp_store_open(const char *path, cp_store_mode mode, cp_store **store, 
 {
     *store = NULL;
     cp_store *opened = calloc(1, sizeof *opened);
-    if (opened != NULL)
-        opened->path = strdup(path);
-    if (opened == NULL || opened->path == NULL) {
-        free(opened);
+    if (opened == NULL)
+        return cp_fail_memory(error, path);
+    opened->path = strdup(path);
+    opened->file_name = cp_store_file_name(path);
+    if (opened->path == NULL || opened->file_name == NULL) {
+        cp_store_close(opened);
         return cp_fail_memory(error, path);
     }
     cp_status status = open_handle(opened, mode, error);
@@ -330,5 +379,6 @@ void cp_store_close(cp_store *store)
         cp_store_rollback(store);
     sqlite3_close(store->handle);
     free(store->path);
+    free(store->file_name);
     free(store);
 }

@@ -36,6 +36,10 @@ CP_MUST_CHECK cp_status cp_store_load_extension(cp_store *store, const char *pat
 
 const char *cp_store_path(const cp_store *store);
 
+/* A path as SQLite and its shell take it for a file, whatever its name (':memory:', 'file:x',
+ * '-x'). The caller frees. NULL when memory is gone. */
+char *cp_store_file_name(const char *path);
+
 /* One writing transaction at a time. Begin takes the write lock at once, so that what is read in
  * it stays true until the commit. Rollback without a transaction is fine. */
 CP_MUST_CHECK cp_status cp_store_begin(cp_store *store, cp_error *error);

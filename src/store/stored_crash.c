@@ -114,6 +114,63 @@ static cp_status find_treatment(cp_store *store, const char *treatment, cp_store
     return status;
 }
 
+// A value of a row within what any crash of ours has; anything may stand in a file of others.
+static cp_status check_value(cp_store *store, const cp_stored_crash *crash, const char *column,
+                             double value, double smallest, double largest, cp_error *error)
+{
+    if (value >= smallest && value <= largest)
+        return CP_OK;
+    return cp_fail(error, CP_BAD_INPUT, "%s: crash %lld: %s must be between %g and %g, found %g",
+                   cp_store_path(store), (long long)crash->id, column, smallest, largest, value);
+}
+
+static cp_status check_options(cp_store *store, const cp_stored_crash *crash, cp_error *error)
+{
+    const cp_crash_options *o = &crash->options;
+    cp_status status = check_value(store, crash, "time_step_s", o->time_step_s, 1e-6, 0.002, error);
+    if (status == CP_OK)
+        status = check_value(store, crash, "duration_s", o->duration_s, o->time_step_s, 2.0, error);
+    if (status == CP_OK)
+        status =
+            check_value(store, crash, "longest_duration_s", o->longest_duration_s, 0.0, 2.0, error);
+    if (status == CP_OK)
+        status = check_value(store, crash, "coast_after_s", o->coast_after_s, o->time_step_s, 2.0,
+                             error);
+    return status;
+}
+
+static cp_status check_motion(cp_store *store, const cp_stored_crash *crash, int role,
+                              cp_error *error)
+{
+    const cp_body_state *state = &crash->configuration.vehicle[role];
+    const struct {
+        const char *column;
+        double value, largest;
+    } VALUE[] = {{"cog_x_m", state->cog_m.x, 1e7},
+                 {"cog_y_m", state->cog_m.y, 1e7},
+                 {"yaw_rad", state->yaw_rad, 1e3},
+                 {"velocity_x_m_s", state->velocity_m_s.x, 200.0},
+                 {"velocity_y_m_s", state->velocity_m_s.y, 200.0},
+                 {"yaw_rate_rad_s", state->yaw_rate_rad_s, 100.0}};
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < sizeof VALUE / sizeof *VALUE; k++)
+        status = check_value(store, crash, VALUE[k].column, VALUE[k].value, -VALUE[k].largest,
+                             VALUE[k].largest, error);
+    return status;
+}
+
+// The outline that SUMO's vehicle had, in place of the model's own.
+static cp_status cover(cp_store *store, cp_stored_crash *crash, int role, double length_m,
+                       double width_m, cp_error *error)
+{
+    cp_status status = check_value(store, crash, "length_m", length_m, 0.1, 50.0, error);
+    if (status == CP_OK)
+        status = check_value(store, crash, "width_m", width_m, 0.1, 10.0, error);
+    if (status == CP_OK)
+        crash->model[role] = cp_vehicle_model_cover(&crash->model[role], length_m, width_m);
+    return status;
+}
+
 static cp_status read_crash(cp_store *store, const char *treatment, cp_stored_crash *crash,
                             cp_error *error)
 {
@@ -144,7 +201,7 @@ static cp_status read_crash(cp_store *store, const char *treatment, cp_stored_cr
         crash->is_secondary = sqlite3_column_int(s.handle, 10) != 0;
     }
     cp_statement_finish(&s);
-    return status;
+    return status == CP_OK ? check_options(store, crash, error) : status;
 }
 
 static cp_status take_side(const char *text, cp_contact_side *side, cp_error *error)
@@ -191,9 +248,10 @@ static cp_status read_vehicle(cp_store *store, int role, cp_stored_crash *crash,
     }
     // As it was simulated; rows of earlier versions have the model's own outline.
     if (status == CP_OK && sqlite3_column_int(s.handle, 14))
-        crash->model[role] =
-            cp_vehicle_model_cover(&crash->model[role], sqlite3_column_double(s.handle, 12),
-                                   sqlite3_column_double(s.handle, 13));
+        status = cover(store, crash, role, sqlite3_column_double(s.handle, 12),
+                       sqlite3_column_double(s.handle, 13), error);
+    if (status == CP_OK)
+        status = check_motion(store, crash, role, error);
 done:
     cp_statement_finish(&s);
     return status;

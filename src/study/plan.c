@@ -106,11 +106,12 @@ static cp_status fill_study(const cp_study *study, const cp_vehicle_model_row *m
 // Hashes of a scenario's files; of the values of a sweep once.
 static cp_status fill_files(const cp_study *study, size_t k, cp_plan_rows *rows, cp_error *error)
 {
-    const char *path = study->scenarios[k].sumocfg_path;
-    if (k == 0 || strcmp(study->scenarios[k - 1].sumocfg_path, path) != 0)
-        return cp_scenario_files_json(path, &rows->scenario[k].files, error);
+    const cp_study_scenario *scenario = &study->scenarios[k];
+    const cp_scenario_inputs inputs = cp_study_scenario_inputs(scenario);
+    if (k == 0 || !cp_study_scenarios_start_alike(&study->scenarios[k - 1], scenario))
+        return cp_scenario_files_json(&inputs, &rows->scenario[k].files, error);
     rows->scenario[k].files = strdup(rows->scenario[k - 1].files);
-    return rows->scenario[k].files != NULL ? CP_OK : cp_fail_memory(error, path);
+    return rows->scenario[k].files != NULL ? CP_OK : cp_fail_memory(error, scenario->name);
 }
 
 static cp_status fill_scenarios(const cp_study *study, cp_plan_rows *rows, cp_error *error)
@@ -363,11 +364,11 @@ cp_status cp_plan_background(const cp_study *study, size_t scenario, cp_backgrou
                              cp_error *error)
 {
     const cp_study_scenario *given = &study->scenarios[scenario];
+    const cp_scenario_inputs inputs = cp_study_scenario_inputs(given);
     cp_scenario_row of = {.sumo_options =
                               words_text(given->sumo_options, given->sumo_option_count)};
-    cp_status status = of.sumo_options != NULL
-                           ? cp_scenario_files_json(given->sumocfg_path, &of.files, error)
-                           : cp_fail_memory(error, "backgrounds");
+    cp_status status = of.sumo_options != NULL ? cp_scenario_files_json(&inputs, &of.files, error)
+                                               : cp_fail_memory(error, "backgrounds");
     if (status == CP_OK)
         status = fill_background(study, scenario, &of, row, error);
     free(of.sumo_options);

@@ -4,33 +4,38 @@
 
 #include "core/error.h"
 
-/* What a scenario consists of on disk: the .sumocfg and the networks, routes and additional files
- * it names, each with a hash, so that results are known to belong to one state of them. */
+#include <stddef.h>
 
-/* JSON object {file as written: SHA-256}, sorted by name; the caller frees. Files that the .sumocfg
- * names but that are not there are left out (SUMO will say so). XML comments take no part in the
- * hash: netconvert writes the date into one. Errors: CP_BAD_INPUT when sumocfg_path cannot be read;
- * CP_NO_MEMORY. */
-CP_MUST_CHECK cp_status cp_scenario_files_json(const char *sumocfg_path, char **json,
+/* What a scenario consists of on disk: the .sumocfg, every file that it or the scenario's further
+ * options name for SUMO to read (networks, routes, additional and weight files, edge filters), and
+ * every file that those include (<include href>, the file of a rerouter, variable speed sign or
+ * calibrator, XML entities), each with a hash, so that results are known to belong to one state of
+ * them. As SUMO has it, lists are split at commas, %20 in a name of the .sumocfg is a blank,
+ * ${NAME} a variable of the environment; names in a .sumocfg are seen from it, those in an included
+ * file from that, those among the options from the working folder. */
+
+typedef struct cp_scenario_inputs {
+    const char *sumocfg_path;
+    char *const *words; /* the study's sumo_options */
+    size_t word_count;
+} cp_scenario_inputs;
+
+/* JSON object {file as written: SHA-256}, sorted by name; the caller frees. A file that another one
+ * includes goes by its name as seen from the .sumocfg, one among the options by "sumo_options: "
+ * and its name. Files that are not there are left out (SUMO will say so). XML comments take no part
+ * in the hash: netconvert writes the date into one. Errors: CP_BAD_INPUT when the .sumocfg cannot
+ * be read or words are no options; CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_scenario_files_json(const cp_scenario_inputs *inputs, char **json,
                                                cp_error *error);
 
-/* Why no scenario may begin with a state that SUMO saved (option load-state): SUMO 1.15 does not
- * put the traffic back as it was, cars collide that otherwise do not (left_turn without driver
- * errors, from a state of its 20th second), alike for every seed; and one that was overtaking on an
- * opposite lane makes SUMO itself crash (head_on_overtaking, 60th second; plain sumo too). A text
- * "must not ...". */
-extern const char CP_SCENARIO_NO_STATE[];
-
-/* CP_BAD_INPUT when the .sumocfg loads a state, or cannot be read; CP_NO_MEMORY. */
-CP_MUST_CHECK cp_status cp_scenario_loads_no_state(const char *sumocfg_path, cp_error *error);
-
 /* The vehicle models that vehicle types of a scenario name: every value of a
- * <param key="crashpulse.model" value="..."/> in its input files (uncompressed ones), in the order
- * of the files; one named twice comes twice. in_file is sumocfg_path: paths are seen from it. visit
- * may fail, which ends it. Errors: as above, and those of visit. */
+ * <param key="crashpulse.model" value="..."/> in its input files, in the order of the files; one
+ * named twice comes twice. in_file is the .sumocfg: paths are seen from it. visit may fail, which
+ * ends it. Errors: as above, and those of visit. */
 typedef cp_status cp_scenario_model_visit(const char *name, const char *in_file, void *context,
                                           cp_error *error);
-CP_MUST_CHECK cp_status cp_scenario_models(const char *sumocfg_path, cp_scenario_model_visit *visit,
-                                           void *context, cp_error *error);
+CP_MUST_CHECK cp_status cp_scenario_models(const cp_scenario_inputs *inputs,
+                                           cp_scenario_model_visit *visit, void *context,
+                                           cp_error *error);
 
 #endif

@@ -4,8 +4,8 @@
 #include "core/file.h"
 #include "core/yaml_file.h"
 #include "study/control_section.h"
-#include "study/scenario_files.h"
 #include "study/study_parts.h"
+#include "study/sumo_configuration.h"
 #include "study/sweep_section.h"
 
 #include <ctype.h>
@@ -397,15 +397,7 @@ static cp_status take_controls(const cp_yaml_file *file, cp_control_kind kind,
     return CP_OK;
 }
 
-static bool is_load_state(const char *word)
-{
-    static const char OPTION[] = "--load-state";
-    size_t length = sizeof OPTION - 1;
-    return strncmp(word, OPTION, length) == 0 && (word[length] == '\0' || word[length] == '=');
-}
-
-static cp_status take_words(const cp_yaml_file *file, const char *path, const raw_scenario *raw,
-                            cp_study_scenario *scenario, cp_error *error)
+static cp_status take_words(const raw_scenario *raw, cp_study_scenario *scenario, cp_error *error)
 {
     if (raw->sumo_options_count == 0)
         return CP_OK;
@@ -413,14 +405,36 @@ static cp_status take_words(const cp_yaml_file *file, const char *path, const ra
     if (scenario->sumo_options == NULL)
         return cp_fail_memory(error, "sumo_options");
     for (size_t k = 0; k < raw->sumo_options_count; k++) {
-        if (is_load_state(raw->sumo_options[k]))
-            return cp_yaml_fail(file, error, path, "%s", CP_SCENARIO_NO_STATE);
         scenario->sumo_options[k] = strdup(raw->sumo_options[k]);
         if (scenario->sumo_options[k] == NULL)
             return cp_fail_memory(error, "sumo_options");
         scenario->sumo_option_count++;
     }
     return CP_OK;
+}
+
+// What SUMO is told must leave a run that can be simulated; of the words the study's line is named.
+static cp_status check_options(const cp_yaml_file *file, const char *path,
+                               const cp_study_scenario *scenario, double duration_s,
+                               cp_error *error)
+{
+    static const char WORDS[] = "sumo_options: ";
+    cp_sumo_configuration configuration = {0};
+    cp_error reason = {0};
+    cp_status status =
+        cp_sumo_configuration_read(scenario->sumocfg_path, scenario->sumo_options,
+                                   scenario->sumo_option_count, &configuration, &reason);
+    bool is_read = status == CP_OK;
+    if (is_read)
+        status = cp_sumo_configuration_check(&configuration, duration_s, &reason);
+    cp_sumo_configuration_destroy(&configuration);
+    if (status == CP_OK)
+        return CP_OK;
+    bool is_of_words = strncmp(reason.text, WORDS, sizeof WORDS - 1) == 0;
+    if (is_of_words)
+        return cp_yaml_fail(file, error, path, "%s", reason.text + sizeof WORDS - 1);
+    *error = reason;
+    return status;
 }
 
 static cp_status take_scenario(const cp_yaml_file *file, const raw_scenario *raw, cp_study *study,
@@ -448,10 +462,10 @@ static cp_status take_scenario(const cp_yaml_file *file, const raw_scenario *raw
             status = cp_fail_memory(error, path);
     }
     if (status == CP_OK)
-        status = cp_scenario_loads_no_state(scenario->sumocfg_path, error);
+        status = take_words(raw, scenario, error);
     snprintf(path, sizeof path, "scenarios[%zu].sumo_options", index);
     if (status == CP_OK)
-        status = take_words(file, path, raw, scenario, error);
+        status = check_options(file, path, scenario, study->duration_s, error);
     snprintf(path, sizeof path, "scenarios[%zu].driver_errors", index);
     if (status == CP_OK)
         status = take_controls(file, CP_CONTROL_DRIVER_ERROR, path, "model", raw->driver_errors,
@@ -662,6 +676,33 @@ bool cp_study_scenarios_start_alike(const cp_study_scenario *one, const cp_study
     for (size_t k = 0; alike && k < one->sumo_option_count; k++)
         alike = strcmp(one->sumo_options[k], other->sumo_options[k]) == 0;
     return alike;
+}
+
+cp_scenario_inputs cp_study_scenario_inputs(const cp_study_scenario *scenario)
+{
+    return (cp_scenario_inputs){.sumocfg_path = scenario->sumocfg_path,
+                                .words = scenario->sumo_options,
+                                .word_count = scenario->sumo_option_count};
+}
+
+cp_status cp_study_tell_options(const cp_study *study, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < study->scenario_count; k++) {
+        const cp_study_scenario *scenario = &study->scenarios[k];
+        cp_sumo_configuration configuration = {0};
+        size_t first = 0;
+        while (!cp_study_scenarios_start_alike(&study->scenarios[first], scenario))
+            first++;
+        if (first < k)
+            continue;
+        status = cp_sumo_configuration_read(scenario->sumocfg_path, scenario->sumo_options,
+                                            scenario->sumo_option_count, &configuration, error);
+        if (status == CP_OK)
+            cp_sumo_configuration_tell(&configuration);
+        cp_sumo_configuration_destroy(&configuration);
+    }
+    return status;
 }
 
 const cp_study_scenario *cp_study_find_scenario(const cp_study *study, const char *name)

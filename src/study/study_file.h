@@ -4,6 +4,7 @@
 
 #include "control/control.h"
 #include "core/error.h"
+#include "study/scenario_files.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -105,6 +106,13 @@ size_t cp_study_baseline(const cp_study *study);
 
 /* Whether SUMO is started alike for both: same .sumocfg, same options. */
 bool cp_study_scenarios_start_alike(const cp_study_scenario *one, const cp_study_scenario *other);
+
+/* What it consists of on disk; borrowed. */
+cp_scenario_inputs cp_study_scenario_inputs(const cp_study_scenario *scenario);
+
+/* Log what becomes of options that the scenarios set (sumo_configuration.h), once for scenarios
+ * that start alike. */
+CP_MUST_CHECK cp_status cp_study_tell_options(const cp_study *study, cp_error *error);
 
 /* By name; NULL when there is none. */
 const cp_study_scenario *cp_study_find_scenario(const cp_study *study, const char *name);

@@ -2,8 +2,9 @@
 #include "traffic/sumo_bridge.h"
 
 #include "core/units.h"
-#include "traffic/road_network.h"
 #include "traffic/straight_run.h"
+#include "traffic/sumo_options.h"
+#include "traffic/sumo_roads.h"
 
 #include <libsumo/libsumo.h>
 
@@ -126,7 +127,7 @@ struct Bridge {
     bool running = false;
     std::string command_line;
     Vehicles vehicles;
-    Names types, lanes, lights, collision_types;
+    Names types, lanes, edges, lights, collision_types;
     std::vector<Size> size_of_type;
     std::vector<cp_vehicle_state> states;
     std::vector<uint32_t> departed;
@@ -137,6 +138,7 @@ struct Bridge {
     std::vector<cp_sumo_collision> collisions;
     std::vector<SpeedCommand> speed_commands; // since the last step
     cp_road_network *roads = nullptr;         // read when first asked for; lanes by number
+    cp_lane_map *lane_map = nullptr;          // likewise
 
     Bridge() = default;
     Bridge(const Bridge &) = delete;
@@ -144,6 +146,7 @@ struct Bridge {
     ~Bridge()
     {
         cp_road_network_destroy(roads);
+        cp_lane_map_destroy(lane_map);
     }
 };
 
@@ -271,21 +274,11 @@ std::vector<std::string> command(const char *sumocfg, uint64_t seed, double step
     std::ostringstream step;
     step.precision(17);
     step << step_length_s;
-    const char *const ours[] = {"--gui-settings-file", // of sumo-gui, may be missing
-                                "",
-                                "--no-step-log",
-                                "true",
-                                "--duration-log.disable",
-                                "true",
-                                "--step-method.ballistic",
-                                "true",
-                                "--collision.action",
-                                "warn",
-                                "--collision.check-junctions",
-                                "true",
-                                "--collision.mingap-factor",
-                                "0"};
-    words.insert(words.end(), std::begin(ours), std::end(ours));
+    for (size_t k = 0; k < CP_SUMO_RULE_COUNT; k++) {
+        const cp_sumo_rule &rule = CP_SUMO_RULE[k];
+        if (rule.treatment == CP_SUMO_REPLACED)
+            words.insert(words.end(), {std::string("--") + rule.option, rule.value});
+    }
     words.insert(words.end(), {"--thread-rngs", std::to_string(streams), "--seed",
                                std::to_string(seed & INT32_MAX), "--step-length", step.str()});
     return words;
@@ -474,105 +467,38 @@ void step()
         check_account();
 }
 
-// Junction of a lane inside one (SUMO's name ":junction_link_lane"); "" for a lane of an edge.
-std::string junction_of(const std::string &lane)
+// The roads, read when first asked for.
+cp_status need_roads(cp_error *error)
 {
-    if (lane.empty() || lane[0] != ':')
-        return "";
-    const size_t edge_end = lane.rfind('_');
-    const size_t end = lane.rfind('_', edge_end - 1);
-    return lane.substr(1, end - 1);
-}
-
-// All lanes and connections of the network, lanes under their numbers.
-cp_status read_roads(cp_error *error)
-{
-    using libsumo::Lane;
-    const std::vector<std::string> ids = Lane::getIDList();
-    for (const std::string &id : ids)
-        bridge->lanes.number(id);
-    const size_t count = bridge->lanes.size();
-    std::vector<std::string> edges(count), junctions(count);
-    std::vector<cp_road_lane> lanes(count, {"", nullptr, 0.0, 0.0, 0.0, 0.0, 0.0});
-    std::vector<cp_road_connection> connections;
-    for (const std::string &id : ids) {
-        const uint32_t number = bridge->lanes.number(id);
-        const auto shape = Lane::getShape(id).value;
-        edges[number] = Lane::getEdgeID(id);
-        junctions[number] = junction_of(id);
-        const bool is_inside = !junctions[number].empty();
-        lanes[number] = {edges[number].c_str(), is_inside ? junctions[number].c_str() : nullptr,
-                         Lane::getLength(id),   shape.front().x,
-                         shape.front().y,       shape.back().x,
-                         shape.back().y};
-        if (is_inside)
-            continue;
-        for (const libsumo::TraCIConnection &link : Lane::getLinks(id))
-            connections.push_back({number, bridge->lanes.number(link.approachedLane),
-                                   link.approachedInternal.empty()
-                                       ? CP_ROAD_NONE
-                                       : bridge->lanes.number(link.approachedInternal)});
-    }
-    return cp_road_network_create(lanes.data(), lanes.size(), connections.data(),
-                                  connections.size(), &bridge->roads, error);
-}
-
-using Points = std::vector<libsumo::TraCIPosition>;
-
-double side_of(const libsumo::TraCIPosition &a, const libsumo::TraCIPosition &b,
-               const libsumo::TraCIPosition &point)
-{
-    return (b.x - a.x) * (point.y - a.y) - (b.y - a.y) * (point.x - a.x);
-}
-
-bool lines_cross(const Points &one, const Points &other)
-{
-    for (size_t k = 1; k < one.size(); k++)
-        for (size_t i = 1; i < other.size(); i++) {
-            const auto &a = one[k - 1], &b = one[k], &c = other[i - 1], &d = other[i];
-            if (side_of(a, b, c) * side_of(a, b, d) < 0 && side_of(c, d, a) * side_of(c, d, b) < 0)
-                return true;
-        }
-    return false;
-}
-
-bool contains(const std::vector<std::string> &list, const std::string &word)
-{
-    return std::find(list.begin(), list.end(), word) != list.end();
-}
-
-// Two lanes inside one junction that has right-of-way rules: where lines cross and the rules see no
-// conflict, one passes over the other.
-bool pass_over(const std::string &one, const std::string &other)
-{
-    using libsumo::Lane;
-    if (junction_of(one).empty() || junction_of(one) != junction_of(other))
-        return false;
-    const auto foes_of_one = Lane::getInternalFoes(one),
-               foes_of_other = Lane::getInternalFoes(other);
-    if (foes_of_one.empty() && foes_of_other.empty())
-        return false; // no rules here, as at an unregulated junction
-    return !contains(foes_of_one, other) && !contains(foes_of_other, one) &&
-           lines_cross(Lane::getShape(one).value, Lane::getShape(other).value);
+    static const cp_sumo_numbers NUMBERS = {
+        [](const char *id) { return bridge->lanes.number(id); },
+        [](const char *id) { return bridge->edges.number(id); },
+        [] { return bridge->lanes.size(); },
+    };
+    if (bridge->roads)
+        return CP_OK;
+    return cp_sumo_roads_read(&NUMBERS, &bridge->roads, &bridge->lane_map, error);
 }
 
 cp_status relate(const cp_vehicle_state *one, const cp_vehicle_state *other,
                  cp_road_relation *relation, cp_error *error)
 {
     const double level_m = 2.5; // less than a bridge is high, more than a ramp climbs over a truck
-    const double margin_m = 10.0; // movement in a step, stop lines set back
-    if (!bridge->roads) {
-        cp_status status = read_roads(error);
-        if (status != CP_OK)
-            return status;
-    }
-    const double reach_m = std::max(one->length_m, other->length_m) + margin_m;
+    const double margin_m = 10.0; // stop lines set back, corners cut
+    cp_status status = need_roads(error);
+    if (status != CP_OK)
+        return status;
+    // A place before the beginning of a lane lies on one before it, as far away at most.
+    const double before_m =
+        std::max(0.0, -one->lane_position_m) + std::max(0.0, -other->lane_position_m);
+    const double reach_m = std::max(one->length_m, other->length_m) + margin_m + before_m;
     const double distance_m = cp_road_distance_m(bridge->roads, {one->lane, one->lane_position_m},
                                                  {other->lane, other->lane_position_m}, reach_m);
     if (!(distance_m <= reach_m))
         *relation = CP_ROADS_APART;
     else if (std::fabs(one->elevation_m - other->elevation_m) > level_m ||
-             pass_over(bridge->lanes.text(one->lane), bridge->lanes.text(other->lane)))
+             cp_sumo_lanes_pass_over(bridge->lanes.text(one->lane),
+                                     bridge->lanes.text(other->lane)))
         *relation = CP_ROADS_OTHER_LEVEL;
     return CP_OK;
 }
@@ -741,6 +667,33 @@ cp_status sumo_bridge_road_relation(const cp_vehicle_state *one, const cp_vehicl
         status = guarded("roads", CP_TRAFFIC_FAILED, error,
                          [&] { answer = relate(one, other, relation, error); });
     return status != CP_OK ? status : answer;
+}
+
+cp_status sumo_bridge_lane_map(const cp_lane_map **map, cp_error *error)
+{
+    *map = nullptr;
+    cp_status status = need_running(error), answer = CP_OK;
+    if (status == CP_OK)
+        status = guarded("roads", CP_TRAFFIC_FAILED, error, [&] { answer = need_roads(error); });
+    if (status == CP_OK && answer == CP_OK)
+        *map = bridge->lane_map;
+    return status != CP_OK ? status : answer;
+}
+
+cp_status sumo_bridge_next_lanes(uint32_t vehicle, uint32_t *lanes, size_t room, size_t *count,
+                                 cp_error *error)
+{
+    *count = 0;
+    return command_vehicle("route", vehicle, error, [=](const std::string &id) {
+        const std::string here = libsumo::Vehicle::getLaneID(id);
+        for (const auto &choice : libsumo::Vehicle::getBestLanes(id)) {
+            if (choice.laneID != here)
+                continue;
+            for (const std::string &lane : choice.continuationLanes)
+                if (lane != here && *count < room)
+                    lanes[(*count)++] = bridge->lanes.number(lane);
+        }
+    });
 }
 
 const char *sumo_bridge_vehicle_id(uint32_t vehicle)

@@ -17,6 +17,7 @@
  *  - The header compiles as C and as C++. */
 
 #include "core/error.h"
+#include "traffic/lane_map.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -84,10 +85,9 @@ typedef enum cp_road_relation {
 
 /* Start a simulation. options: option_count further SUMO command line words
  * ("--lateral-resolution", "0.8"), which override the configuration; the bridge appends
- * housekeeping (--no-step-log), the options every run of ours sets (ballistic update,
- * collision.action warn, junction checks, mingap-factor 0, thread-rngs: one random stream a lane,
- * at least 64) and seed and step length last; a word of those in options is refused by SUMO as
- * given twice. SUMO takes 31 bits of the seed, and its clock counts milliseconds: a step length of
+ * the options every run of ours sets (traffic/sumo_options.h), thread-rngs (one random stream a
+ * lane, at least 64), seed and step length; a word of those in options is refused by SUMO as given
+ * twice. SUMO takes 31 bits of the seed, and its clock counts milliseconds: a step length of
  * another kind is refused. begin/end times stay those of the configuration. Sets SUMO_HOME when it
  * is unset. SUMO's warnings go to stderr (but those of collisions and emergency braking, which are
  * what a run is for), its errors into error. */
@@ -123,6 +123,13 @@ CP_MUST_CHECK cp_status sumo_bridge_collisions(const cp_sumo_collision **collisi
 CP_MUST_CHECK cp_status sumo_bridge_road_relation(const cp_vehicle_state *one,
                                                   const cp_vehicle_state *other,
                                                   cp_road_relation *relation, cp_error *error);
+
+/* Where the lanes run, by the numbers of lanes; owned by the bridge. Read like the above. */
+CP_MUST_CHECK cp_status sumo_bridge_lane_map(const cp_lane_map **map, cp_error *error);
+/* The lanes of edges that a vehicle will take next on its route, staying in its lane as long as it
+ * can; the first room of them. None while SUMO does not know (it is in a junction). */
+CP_MUST_CHECK cp_status sumo_bridge_next_lanes(uint32_t vehicle, uint32_t *lanes, size_t room,
+                                               size_t *count, cp_error *error);
 
 /* Width of a lane, m. */
 CP_MUST_CHECK cp_status sumo_bridge_lane_width(uint32_t lane, double *width_m, cp_error *error);

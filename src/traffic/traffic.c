@@ -377,6 +377,21 @@ const char *cp_traffic_vehicle_type(const cp_traffic *traffic, uint32_t vehicle)
     return motion && traffic->source->type_id ? traffic->source->type_id(motion->after.type) : "";
 }
 
+cp_status cp_traffic_lane_map(const cp_traffic *traffic, const cp_lane_map **map, cp_error *error)
+{
+    *map = NULL;
+    return traffic->source->lane_map ? traffic->source->lane_map(map, error) : CP_OK;
+}
+
+cp_status cp_traffic_next_lanes(const cp_traffic *traffic, uint32_t vehicle, uint32_t *lanes,
+                                size_t room, size_t *count, cp_error *error)
+{
+    *count = 0;
+    return traffic->source->next_lanes
+               ? traffic->source->next_lanes(vehicle, lanes, room, count, error)
+               : CP_OK;
+}
+
 cp_status cp_traffic_lane_width(const cp_traffic *traffic, const cp_vehicle_state *state,
                                 double *width_m, cp_error *error)
 {

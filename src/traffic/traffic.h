@@ -47,6 +47,10 @@ typedef struct cp_traffic_source {
     /* May be NULL: all roads meet. */
     cp_status (*road_relation)(const cp_vehicle_state *one, const cp_vehicle_state *other,
                                cp_road_relation *relation, cp_error *error);
+    /* May both be NULL: nobody knows where lanes run. */
+    cp_status (*lane_map)(const cp_lane_map **map, cp_error *error);
+    cp_status (*next_lanes)(uint32_t vehicle, uint32_t *lanes, size_t room, size_t *count,
+                            cp_error *error);
     void (*stop)(void);
 } cp_traffic_source;
 
@@ -100,6 +104,13 @@ CP_MUST_CHECK cp_status cp_traffic_road_relation(const cp_traffic *traffic,
 const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle);
 /* SUMO vehicle type of a vehicle on the road; "" of any other. */
 const char *cp_traffic_vehicle_type(const cp_traffic *traffic, uint32_t vehicle);
+/* Where the lanes run and which lanes a vehicle takes next (sumo_bridge.h); *map is
+ * NULL and *count 0 where that is not known. */
+CP_MUST_CHECK cp_status cp_traffic_lane_map(const cp_traffic *traffic, const cp_lane_map **map,
+                                            cp_error *error);
+CP_MUST_CHECK cp_status cp_traffic_next_lanes(const cp_traffic *traffic, uint32_t vehicle,
+                                              uint32_t *lanes, size_t room, size_t *count,
+                                              cp_error *error);
 /* Width of the lane that a vehicle is on, m. */
 CP_MUST_CHECK cp_status cp_traffic_lane_width(const cp_traffic *traffic,
                                               const cp_vehicle_state *state, double *width_m,

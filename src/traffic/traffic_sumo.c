@@ -23,6 +23,8 @@ static const cp_traffic_source SUMO = {
     .lane_width = sumo_bridge_lane_width,
     .next_light = sumo_bridge_next_light,
     .road_relation = sumo_bridge_road_relation,
+    .lane_map = sumo_bridge_lane_map,
+    .next_lanes = sumo_bridge_next_lanes,
     .stop = sumo_bridge_stop,
 };
 

@@ -155,13 +155,26 @@ class Report(unittest.TestCase):
             return row[5];""")
         self.assertEqual(shown, f"{wanted:.2f}")
 
+    def test_crashes_above_a_severity_agree_with_sql(self):
+        # The figure's own data: crashes above every whole g, by the larger of the struck vehicles.
+        shown = self.browser.run("""
+            document.querySelector("#figure-above details").open = true;
+            document.querySelector("#figure-above details").ontoggle();
+            return Array.from(document.querySelectorAll("#figure-above table tbody tr"),
+                row => Array.from(row.children, cell => cell.textContent)).map(r => [r[0], Number(r[1]), Number(r[2]), Number(r[3]), Number(r[4])]);""")
+        query = next(q for q in self.browser.run("return JSON.parse(document.getElementById('data').textContent).queries;")
+                     if q["name"] == "crashes_above_severity")
+        wanted = [list(row[:5]) for row in self.db.execute(query["sql"]).fetchall()]
+        self.assertEqual(shown, wanted)
+        self.assertGreater(sum(row[2] for row in wanted), 100)
+
     def test_a_pair_is_a_seed_run_with_both(self):
         for scenario, crash_type, scope in (("", "", "all"), ("left_turn", "front-side", "all"), ("", "front-front", "inside")):
             self.choose(scenario, crash_type, scope)
             rows = self.db.execute("""
-                WITH seen AS (SELECT r.scenario_id, r.number, r.variant_id, avg(w.olc_g) AS olc_g
+                WITH seen AS (SELECT r.scenario_id, r.number, r.variant_id, avg(iif(w.censored, 0.0, w.olc_g)) AS olc_g
                     FROM frontal_vehicle AS w JOIN crash AS c ON c.id = w.crash_id JOIN replication AS r ON r.id = c.replication_id
-                    WHERE w.olc_g IS NOT NULL AND (?1 = '' OR w.scenario = ?1) AND (?2 = '' OR w.crash_type = ?2)
+                    WHERE w.olc_status <> 'simulation_failed' AND (?1 = '' OR w.scenario = ?1) AND (?2 = '' OR w.crash_type = ?2)
                       AND (?3 = 'all' OR w.validity = 'inside') GROUP BY 1, 2, 3)
                 SELECT s.name || ', replication ' || b.number, b.olc_g, t.olc_g FROM seen AS b
                 JOIN variant AS v ON v.id = b.variant_id AND v.is_baseline = 1

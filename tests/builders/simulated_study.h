@@ -57,6 +57,25 @@ static inline size_t simulated_poisson(cp_rng_key key, uint64_t counter, double 
     return n;
 }
 
+// Quantile of the gamma distribution with mean 1 and this variance. GSL's inverse gives up on
+// shapes well below 1: then by bisection.
+static inline double simulated_gamma(double u, double variance)
+{
+    if (variance < 1.0)
+        return gsl_cdf_gamma_Pinv(u, 1.0 / variance, variance);
+    double low = 0.0, high = 1e4 * variance;
+    for (int k = 0; k < 200; k++) {
+        double middle = k < 100 && low < 1e-300 ? high * 1e-3 : 0.5 * (low + high);
+        if (middle < 1e-250)
+            return 0.0;
+        if (gsl_cdf_gamma_P(middle, 1.0 / variance, variance) >= u)
+            high = middle;
+        else
+            low = middle;
+    }
+    return high;
+}
+
 /* Variant 0 (baseline) or 1 of the study with this seed. Ends the program without memory. */
 static inline simulated_variant simulate_variant(const simulated_design *d, uint64_t seed,
                                                  int variant)
@@ -81,7 +100,7 @@ static inline simulated_variant simulate_variant(const simulated_design *d, uint
         double factor = 1.0;
         if (d->rho > 0.0) {
             double variance = d->rho / ((1.0 - d->rho) * d->mean_crashes);
-            factor = gsl_cdf_gamma_Pinv(cp_rng_uniform(common, 900001), 1.0 / variance, variance);
+            factor = simulated_gamma(cp_rng_uniform(common, 900001), variance);
         }
         v.exposure[c] = 90.0 + 20.0 * cp_rng_uniform(key, 900004);
         size_t n = simulated_poisson(key, 900002, mean * factor * v.exposure[c] / 100.0);

@@ -77,6 +77,26 @@ static inline cp_status two_cars_write_routes(const two_cars *e, const char *pat
     return cp_file_write(path, text, (size_t)size, error);
 }
 
+/* SUMO, but nobody asks it whether the roads meet: it does not know. */
+static const cp_traffic_source TWO_CARS_SOURCE = {
+    .step = sumo_bridge_step,
+    .departed = sumo_bridge_departed,
+    .time_s = sumo_bridge_time_s,
+    .expected_vehicles = sumo_bridge_expected_vehicles,
+    .vehicle_id = sumo_bridge_vehicle_id,
+    .type_id = sumo_bridge_type_id,
+    .remove = sumo_bridge_remove,
+    .set_speed = sumo_bridge_set_speed,
+    .set_speed_mode = sumo_bridge_set_speed_mode,
+    .speed_mode = sumo_bridge_speed_mode,
+    .read_places = sumo_bridge_read_places,
+    .place = sumo_bridge_place,
+    .lane_width = sumo_bridge_lane_width,
+    .lane_map = sumo_bridge_lane_map,
+    .next_lanes = sumo_bridge_next_lanes,
+    .stop = sumo_bridge_stop,
+};
+
 /* The two in SUMO; CRASHPULSE_BUILD is the build folder. Destroy the traffic. */
 static inline cp_status two_cars_open(const two_cars *e, double step_length_s, cp_traffic **traffic,
                                       cp_error *error)
@@ -86,14 +106,11 @@ static inline cp_status two_cars_open(const two_cars *e, double step_length_s, c
     snprintf(sumocfg, sizeof sumocfg, "%s/tests/control/two_cars/two_cars.sumocfg", build);
     snprintf(routes, sizeof routes, "%s/tests/control/two_cars/%d.rou.xml", build, (int)getpid());
     const char *const words[] = {"--route-files", routes};
-    cp_traffic_options options = {.sumocfg = sumocfg,
-                                  .seed = 1,
-                                  .step_length_s = step_length_s,
-                                  .options = words,
-                                  .option_count = 2};
     cp_status status = two_cars_write_routes(e, routes, error);
     if (status == CP_OK)
-        status = cp_traffic_create(&options, traffic, error);
+        status = sumo_bridge_start(sumocfg, 1, step_length_s, words, 2, error);
+    if (status == CP_OK)
+        status = cp_traffic_create_from(&TWO_CARS_SOURCE, step_length_s, traffic, error);
     unlink(routes);
     return status;
 }

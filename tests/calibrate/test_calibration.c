@@ -99,7 +99,7 @@ static void read_report(const workshop *shop, char *report, size_t size)
 static void run_fit(const workshop *shop, cp_fit *fit, cp_calibration *calibration)
 {
     cp_error error = {0};
-    if (cp_fit_load(shop->fit_path, fit, &error) != CP_OK)
+    if (cp_fit_load(shop->fit_path, NULL, fit, &error) != CP_OK)
         fail_msg("%s", error.text);
     if (cp_calibration_run(fit, calibration, &error) != CP_OK)
         fail_msg("%s", error.text);
@@ -308,7 +308,7 @@ static void what_is_known_holds_back(void **state)
         cp_fit fit;
         cp_calibration calibration;
         cp_error error = {0};
-        if (cp_fit_load(shop.fit_path, &fit, &error) != CP_OK ||
+        if (cp_fit_load(shop.fit_path, NULL, &fit, &error) != CP_OK ||
             cp_calibration_run(&fit, &calibration, &error) != CP_OK)
             fail_msg("%s", error.text);
         double wanted_kn =
@@ -400,7 +400,7 @@ static void errors_name_line_and_field(void **state)
         workshop shop = open_workshop(CASES[k].lines);
         cp_fit fit;
         cp_error error = {0};
-        assert_int_equal(cp_fit_load(shop.fit_path, &fit, &error), CP_BAD_INPUT);
+        assert_int_equal(cp_fit_load(shop.fit_path, NULL, &fit, &error), CP_BAD_INPUT);
         if (strstr(error.text, CASES[k].words) == NULL)
             fail_msg("expected '%s' in: %s", CASES[k].words, error.text);
         close_workshop(&shop);

@@ -27,7 +27,7 @@ static cp_status load_fit(const char *lines, cp_fit *fit, cp_error *error)
     ev5_folder_write(&shop, "x.fit.yaml", text);
     snprintf(path, sizeof path, "%s/x.fit.yaml", shop.path);
     *error = (cp_error){0};
-    cp_status status = cp_fit_load(path, fit, error);
+    cp_status status = cp_fit_load(path, NULL, fit, error);
     ev5_folder_close(&shop);
     return status;
 }

@@ -55,7 +55,10 @@ static void errors_name_line_and_column(void **state)
         {"speed_kmh,offset_mm,angle_deg,olc_g\n56,0,0,fast\n",
          ":2: olc_fe_g must be a number between 0 and 200, found 'fast'"},
         {"speed_kmh,offset_mm,angle_deg,olc_g\n56,0,0,5\n-56,0,0,5\n", ":3: speed_kmh"},
-        {"speed_kmh,offset_mm,angle_deg,olc_g\n56,0,0\n", ":2: olc_fe_g"},
+        {"speed_kmh,offset_mm,angle_deg,olc_g\n56,0,0\n", ":2: must have a field for each"},
+        {"speed_kmh,offset_mm,angle_deg,olc_g\n56,0,0,23,9\n", "found 5 (is the decimal sign"},
+        {"speed_kmh,offset_mm,angle_deg,olc_g\n56,0,0,0x10\n", "found '0x10'"},
+        {"speed_kmh,offset_mm,angle_deg,olc_g,olc_fe_g\n56,0,0,9,8\n", "is given twice"},
         {"speed_kmh,offset_mm,angle_deg,olc_g\n", "no configuration"},
     };
     for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {

@@ -71,7 +71,7 @@ static void the_accords_pulse_is_plausible(void **state)
     char path[4096];
     cp_error error = {0};
     path_of("vehicles/honda_accord_2014.fit.yaml", path);
-    if (cp_fit_load(path, &fit, &error) != CP_OK)
+    if (cp_fit_load(path, NULL, &fit, &error) != CP_OK)
         fail_msg("%s", error.text);
     assert_true(fit.plausible.given);
     double mark[CP_MARK_COUNT], excess_1[CP_MARK_COUNT];

@@ -190,7 +190,7 @@ static void run_experiment(experiment *twin)
     cp_fit fit;
     cp_calibration calibration;
     cp_error error = {0};
-    if (cp_fit_load(path, &fit, &error) != CP_OK ||
+    if (cp_fit_load(path, NULL, &fit, &error) != CP_OK ||
         cp_calibration_run(&fit, &calibration, &error) != CP_OK)
         fail_msg("%s", error.text);
 

@@ -106,4 +106,4 @@ with tempfile.TemporaryDirectory() as name:
     state = folder / "net/state.sumocfg"
     state.write_text(configuration.read_text().replace("<input>", '<input><load-state value="s.xml"/>'))
     message = run("background", state, expect=2).stderr
-    assert "state.sumocfg: must not begin with a saved state" in message, message
+    assert "state.sumocfg:4: load-state must not be set, found 's.xml'" in message, message

@@ -20,7 +20,7 @@ static const char STUDY[] = "study: added\n"
                             "replications: 1\n"
                             "duration_s: 10\n"
                             "scenarios:\n"
-                            "  - {name: any, sumocfg: study.yaml}\n"
+                            "  - {name: any, sumocfg: a.sumocfg}\n"
                             "variants:\n"
                             "  - name: baseline\n"
                             "  - name: both\n"
@@ -37,6 +37,8 @@ static void one_file_and_one_row(void **unused)
     cp_study study;
     cp_error error = {0};
     assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/a.sumocfg", folder);
+    assert_int_equal(cp_file_write(path, "<configuration/>", 16, &error), CP_OK);
     snprintf(path, sizeof path, "%s/study.yaml", folder);
     assert_int_equal(cp_file_write(path, STUDY, strlen(STUDY), &error), CP_OK);
     if (cp_study_load(path, &study, &error) != CP_OK)
@@ -59,6 +61,8 @@ static void one_file_and_one_row(void **unused)
     cp_controls_destroy(controls);
     cp_traffic_destroy(traffic);
     cp_study_destroy(&study);
+    unlink(path);
+    snprintf(path, sizeof path, "%s/a.sumocfg", folder);
     unlink(path);
     rmdir(folder);
 }

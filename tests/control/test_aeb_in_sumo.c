@@ -28,18 +28,6 @@
 
 // ---- exact ---------------------------------------------------------------------------------
 
-// With the velocity and yaw rate of its motion there.
-static cp_moving_rectangle moving_target_at(const two_cars *e, double time_s)
-{
-    const double instant_s = 1e-4;
-    cp_rectangle now = two_cars_target_at(e, time_s),
-                 soon = two_cars_target_at(e, time_s + instant_s);
-    return (cp_moving_rectangle){
-        .rectangle = now,
-        .velocity_m_s = cp_vec2_scale(cp_vec2_sub(soon.centre_m, now.centre_m), 1.0 / instant_s),
-        .yaw_rate_rad_s = cp_wrap_angle(soon.yaw_rad - now.yaw_rad) / instant_s};
-}
-
 // Way of the own car under the brake: the closed form of constant jerk, then constant deceleration.
 static double exact_way_m(const two_cars *e, const cp_brake *brake, double time_s)
 {
@@ -53,18 +41,27 @@ static double exact_way_m(const two_cars *e, const cp_brake *brake, double time_
     return e->own_m_s * time_s - lost_m;
 }
 
-// TTC below the threshold; of a target that turns also if it drove straight on from now, up to 0.5
-// s later (lookout.h, conditions 2 and 4).
-static bool is_threat(const two_cars *e, const cp_moving_rectangle *own,
-                      const cp_moving_rectangle *target)
+// Whether the two would touch within the threshold, the own car at the speed of now, the target on
+// along its road (lookout.h, condition 2).
+static bool is_threat(const two_cars *e, double way_m, double speed_m_s, double time_s)
 {
-    if (!(cp_ttc_s(own, target, e->ttc_s) < e->ttc_s))
-        return false;
-    if (cp_target_class_of(own, target) != CP_TARGET_TURNING)
-        return true;
-    cp_moving_rectangle straightened = *target;
-    straightened.yaw_rate_rad_s = 0.0;
-    return cp_ttc_s(own, &straightened, e->ttc_s + 0.5) < INFINITY;
+    const double fine_s = 1e-3;
+    double closest_m = 0.0; // nobody comes nearer in a fine step than both drive and the target turns
+    for (double later_s = 0.0; later_s < e->ttc_s; later_s += fine_s) {
+        if (closest_m > 0.0) {
+            closest_m -= 2.0 * (speed_m_s + e->target_m_s) * fine_s;
+            continue;
+        }
+        cp_rectangle own = {{way_m + speed_m_s * later_s - 0.5 * TWO_CARS_LENGTH_M, 0.0},
+                            0.0,
+                            TWO_CARS_LENGTH_M,
+                            TWO_CARS_WIDTH_M};
+        cp_rectangle target = two_cars_target_at(e, time_s + later_s);
+        closest_m = cp_rectangle_separation(&own, &target);
+        if (closest_m <= 0.0)
+            return true;
+    }
+    return false;
 }
 
 // Own speed at the first touch of the exact motion; NAN when there is none. *request_s: the
@@ -78,17 +75,16 @@ static double exact_impact_m_s(const two_cars *e, double *impact_s, double *requ
         if (speed_m_s <= 0.0)
             return NAN;
         double way_m = exact_way_m(e, &brake, time_s);
-        cp_moving_rectangle own = {.rectangle = {{way_m - 0.5 * TWO_CARS_LENGTH_M, 0.0},
-                                                 0.0,
-                                                 TWO_CARS_LENGTH_M,
-                                                 TWO_CARS_WIDTH_M},
-                                   .velocity_m_s = {speed_m_s, 0.0}};
-        cp_moving_rectangle target = moving_target_at(e, time_s);
-        if (cp_rectangle_separation(&own.rectangle, &target.rectangle) <= 0.0) {
+        cp_rectangle own = {{way_m - 0.5 * TWO_CARS_LENGTH_M, 0.0},
+                            0.0,
+                            TWO_CARS_LENGTH_M,
+                            TWO_CARS_WIDTH_M};
+        cp_rectangle target = two_cars_target_at(e, time_s);
+        if (cp_rectangle_separation(&own, &target) <= 0.0) {
             *impact_s = time_s;
             return speed_m_s;
         }
-        if (brake.start_s == INFINITY && is_threat(e, &own, &target)) {
+        if (brake.start_s == INFINITY && is_threat(e, way_m, speed_m_s, time_s)) {
             *request_s = time_s;
             brake.start_s = time_s + DELAY_S;
         }

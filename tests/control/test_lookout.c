@@ -33,7 +33,7 @@ static bool find_threat_driving(cp_traffic *traffic, const cp_lookout_settings *
         assert_int_equal(cp_lookout_step(&lookout, &error), CP_OK);
         const cp_vehicle_motion *own = cp_traffic_motion_of(traffic, 0);
         assert_int_equal(cp_lookout_track(&lookout, own, &error), CP_OK);
-        found = cp_lookout_threat(&lookout, own, threat);
+        assert_int_equal(cp_lookout_threat(&lookout, own, &found, threat, &error), CP_OK);
     }
     cp_lookout_destroy(&lookout);
     return found;

@@ -56,7 +56,7 @@ static void row_ids_are_the_first_42_bits(void **state)
     for (int k = 0; k < 1000; k++) {
         snprintf(text, sizeof text, "key %d", k);
         int64_t id = cp_hash_row_id(text);
-        assert_true(id >= 0 && id < INT64_C(1) << 42); // times 2^20 stays below 2^62
+        assert_true(id >= 0 && id < INT64_C(1) << 42); // a double holds it
     }
 }
 

@@ -135,12 +135,36 @@ static void complaints_name_the_line_of_the_key(void **state)
     assert_non_null(strstr(error.text, "no_such_file.yaml"));
 }
 
+// What libcyaml fills in and what stands in the list of lines must be the same.
+static void aliases_fill_structure_and_lines_alike(void **state)
+{
+    (void)state;
+    cp_yaml_file file;
+    cp_error error = {0};
+    assert_int_equal(load_text("car: &n one\n"
+                               "parts:\n"
+                               "  - &p {name: engine, mass_kg: &m 260}\n"
+                               "  - *p\n"
+                               "  - {name: *n, mass_kg: *m}\n",
+                               &file, &error),
+                     CP_OK);
+    const yaml_car *car = (const yaml_car *)file.data;
+    assert_int_equal(car->parts_count, 3);
+    assert_string_equal(car->parts[1].name, "engine");
+    assert_string_equal(car->parts[1].mass_kg, "260");
+    assert_string_equal(car->parts[2].name, "one");
+    assert_string_equal(car->parts[2].mass_kg, "260");
+    assert_int_equal(cp_yaml_line_of(&file, "parts[1].mass_kg"), 3);
+    cp_yaml_close(&file);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_key_path_has_its_line),
         cmocka_unit_test(numbers_are_whole_texts_in_range),
         cmocka_unit_test(complaints_name_the_line_of_the_key),
+        cmocka_unit_test(aliases_fill_structure_and_lines_alike),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

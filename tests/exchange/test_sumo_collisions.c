@@ -70,7 +70,7 @@ static void bad_files_are_told_by_line(void **unused)
     cp_collision_list list;
     cp_error error = {0};
     assert_int_equal(cp_sumo_collisions_read("nowhere.xml", &list, &error), CP_BAD_INPUT);
-    assert_non_null(strstr(error.text, "nowhere.xml: No such file"));
+    assert_non_null(strstr(error.text, "nowhere.xml: cannot be read: No such file"));
 }
 
 int main(void)

@@ -25,7 +25,7 @@ for path in sorted(p for suffix in ("*.c", "*.h", "*.cpp") for p in (source / "s
     if room not in allowed:
         breaches.append(f"{here}:1: room '{room}' is not in the include law")
         continue
-    if path.suffix == ".cpp" and path.name not in ("sumo_bridge.cpp", "optimiser.cpp"):
+    if path.suffix == ".cpp" and path.name not in ("sumo_bridge.cpp", "sumo_roads.cpp", "optimiser.cpp"):
         breaches.append(f"{here}:1: C++ outside the two bridges")
     for number, line in enumerate(text.splitlines(), 1):
         own = re.match(r'\s*#\s*include\s+"(\w+)/', line)

@@ -42,8 +42,17 @@ static void a_rear_impact_counts_from_400_mm_in_half_a_second(void **state)
 static void front_on_front_counts_from_a_tenth_of_the_width(void **state)
 {
     (void)state;
-    assert_true(is_crash(car(0, 0, 0, 0.1), car(0, 1.79, CP_PI, 0.1)));
-    assert_false(is_crash(car(0, 0, 0, 0.1), car(0, 1.81, CP_PI, 0.1)));
+    assert_true(is_crash(car(0, 0, 0, 0.5), car(0, 1.79, CP_PI, 0.5)));
+    assert_false(is_crash(car(0, 0, 0, 0.5), car(0, 1.81, CP_PI, 0.5)));
+    // Of the narrower, whichever comes first; slower than 0.8 m/s nothing is struck.
+    for (double overlap_m = 0.09; overlap_m < 0.12; overlap_m += 0.02) {
+        cp_touching_body narrow = car(0, 1.5 - overlap_m, CP_PI, 5);
+        narrow.rectangle.width_m = 1.0;
+        assert_int_equal(is_crash(car(0, 0, 0, 5), narrow), overlap_m > 0.1);
+        assert_int_equal(is_crash(narrow, car(0, 0, 0, 5)), overlap_m > 0.1);
+    }
+    assert_false(is_crash(car(0, 0, 0, 0.39), car(0, 0, CP_PI, 0.4)));
+    assert_true(is_crash(car(0, 0, 0, 0.41), car(0, 0, CP_PI, 0.4)));
     // Fast but thin: parted by less than 0.4 m sideways at any time.
     assert_false(is_crash(car(0, 0, 0, 20), car(0, 1.81, CP_PI, 20)));
     // Thin and turning in: goes deep.
@@ -77,6 +86,48 @@ static void a_clipped_waiting_car_is_a_graze(void **state)
     assert_false(clip_is_crash(0.38));
     assert_true(clip_is_crash(0.42));
     assert_true(clip_is_crash(1.5));
+}
+
+/* A car that stands or creeps turned, its front corner `reach_m` in the way of one that passes: its
+ * flank, behind the corner, leads away from the way or into it. */
+static bool corner_is_crash(double turned_rad, double reach_m, double creep_m_s, bool swap)
+{
+    cp_touching_body passing = car(0, 0, CP_PI, 11.0), turned = car(0, 0, turned_rad, creep_m_s);
+    cp_vec2 corner_m =
+        cp_pose_to_world((cp_pose){turned.rectangle.centre_m, turned.rectangle.yaw_rad},
+                         (cp_vec2){2.0, 1.0}); // front left
+    passing.rectangle.centre_m = (cp_vec2){30.0, corner_m.y - reach_m + 1.0};
+    for (int k = 0; k < 1000; k++)
+        passing.rectangle.centre_m.x -=
+            cp_rectangle_separation(&passing.rectangle, &turned.rectangle);
+    return swap ? is_crash(turned, passing) : is_crash(passing, turned);
+}
+
+static void a_brushed_corner_is_no_front_on_front(void **state)
+{
+    (void)state;
+    for (int swap = 0; swap < 2; swap++)
+        for (double creep_m_s = 0.0; creep_m_s < 2.0; creep_m_s += 0.3) {
+            // Turned by 16 degrees with the flank away from the way, and into it.
+            assert_false(corner_is_crash(0.28, 0.14, creep_m_s, swap));
+            assert_true(corner_is_crash(0.28, 0.5, creep_m_s, swap));
+            assert_true(corner_is_crash(-0.28, 0.14, creep_m_s, swap));
+        }
+}
+
+static void front_edges_meet_across_the_relative_velocity(void **state)
+{
+    (void)state;
+    cp_touching_body body[2] = {car(0, 0, 0, 10), car(0, 1.5, CP_PI, 10)};
+    assert_near(cp_front_edges_overlap_m(body), 0.5, 1e-12);
+    // Turned by 30 degrees, standing: its edge covers 2 cos 30 across.
+    body[1] = car(0, 1.5, CP_PI - CP_PI / 6, 0);
+    assert_near(cp_front_edges_overlap_m(body), 1.0 - (1.5 - cos(CP_PI / 6)), 1e-12);
+    cp_touching_body swapped[2] = {body[1], body[0]};
+    assert_near(cp_front_edges_overlap_m(swapped), cp_front_edges_overlap_m(body), 1e-12);
+    // In a queue, side by side, nothing moves.
+    body[0].front_velocity_m_s = (cp_vec2){0, 0};
+    assert_true(cp_front_edges_overlap_m(body) == -INFINITY);
 }
 
 // Straight on from 0.8 m/s; at 1 m/s also at an angle, when it would go deep; never slower.
@@ -158,6 +209,8 @@ int main(void)
         cmocka_unit_test(a_rear_impact_counts_from_400_mm_in_half_a_second),
         cmocka_unit_test(front_on_front_counts_from_a_tenth_of_the_width),
         cmocka_unit_test(a_clipped_waiting_car_is_a_graze),
+        cmocka_unit_test(a_brushed_corner_is_no_front_on_front),
+        cmocka_unit_test(front_edges_meet_across_the_relative_velocity),
         cmocka_unit_test(what_lies_in_the_way_is_measured_across_the_heading),
         cmocka_unit_test(a_vehicle_that_slides_or_spins_is_no_vehicle),
         cmocka_unit_test(a_slow_touch_at_an_angle_counts_like_one_straight_on),

@@ -83,7 +83,7 @@ static void figures_agree_with_the_views(void **state)
         assert_true(fabs(v->description[CP_QUANTITY_OLC][CP_SCOPE_ALL].median.value - median) <
                     1e-9);
         assert_true(fabs(v->rate - rate) < 1e-6 * rate);
-        assert_true(v->rate_garwood.low < rate && rate < v->rate_garwood.high);
+        assert_true(v->rate_widened.low < rate && rate < v->rate_widened.high);
     }
 }
 
@@ -95,11 +95,11 @@ static void few_replications_give_p_and_no_interval(void **state)
     assert_int_equal(f->comparison.contrast_count, 1);
     assert_int_equal(c->replications[0], 16);
     assert_int_equal(c->rate_ratio_bootstrap.status, CP_INTERVAL_TOO_FEW_REPLICATIONS);
-    assert_int_equal(c->severity[CP_QUANTITY_OLC][CP_SCOPE_ALL].median_interval.status,
+    assert_int_equal(c->severity[CP_QUANTITY_OLC].median_interval.status,
                      CP_INTERVAL_TOO_FEW_REPLICATIONS);
     assert_true(c->rate_p > 0.0 && c->rate_p < 0.05);
     assert_true(c->rate_ratio > 0.4 && c->rate_ratio < 0.6);
-    assert_true(c->severity[CP_QUANTITY_OLC][CP_SCOPE_ALL].cliffs_delta < 0.0);
+    assert_true(c->severity[CP_QUANTITY_OLC].superiority.cliffs_delta < 0.0);
 }
 
 // Slices of a filter cover everything once; a slice of rates keeps the whole exposure.
@@ -236,7 +236,7 @@ static void injuries_agree_with_sql(void **state)
         rate[v] = figures->injury[CP_SCOPE_ALL][k].rate;
         assert_true(fabs(rate[v] - 1e6 * expected / figures->vehicle_km) < 1e-6 * rate[v]);
     }
-    const cp_benefit_figures *benefit = &f->comparison.contrast[0].benefit[CP_SCOPE_ALL][k];
+    const cp_benefit_figures *benefit = &f->comparison.contrast[0].benefit[k];
     assert_true(fabs(benefit->benefit_1 - (1.0 - rate[1] / rate[0])) < 1e-9);
 }
 
@@ -246,20 +246,30 @@ static void groups_agree_with_sql(void **state)
     fixture *f = *state;
     cp_error error = {0};
     cp_grouping g;
-    cp_comparison_options options = {.repetitions = 10, .permutations = 0};
+    cp_comparison_options options = {.repetitions = 10, .permutations = 0, .above = {10.0, 5.0}};
     const char *where = "closing_speed_m_s > 12 AND validity <> 'angle' -- a comment";
     assert_int_equal(
         cp_grouping_create(f->store, &f->data, "left_turn", "validity", where, &g, &error), CP_OK);
     assert_true(g.count >= 2);
-    size_t vehicles = 0;
+    size_t vehicles = 0, above = 0;
     double wanted = 0.0;
     for (size_t k = 0; k < g.count; k++) {
         cp_comparison part;
         assert_int_equal(cp_compare(&f->data, 0, g.slice[k], &options, &part, &error), CP_OK);
         vehicles += part.variant[0].frontal_vehicles;
+        above += part.variant[0].above[CP_EXCEEDED_OLC].crashes;
         assert_int_equal(part.variant[0].replications, 8);
         cp_comparison_destroy(&part);
     }
+    // Crashes above the headline severity by the chosen vehicles of each group.
+    if (cp_query_number(f->store,
+                        "SELECT count(*) FROM (SELECT DISTINCT crash_id, validity FROM "
+                        "frontal_vehicle WHERE closing_speed_m_s > 12 AND validity <> 'angle' AND "
+                        "variant = 'baseline' AND scenario = 'left_turn' AND olc_g > 10)",
+                        &wanted, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(above, (size_t)wanted);
+    assert_true(wanted > 0.0);
     if (cp_query_number(f->store,
                         "SELECT count(*) FROM frontal_vehicle WHERE closing_speed_m_s > 12 AND"
                         " validity <> 'angle' AND variant = 'baseline' AND scenario = 'left_turn'",
@@ -275,12 +285,17 @@ static void groups_agree_with_sql(void **state)
                      CP_BAD_INPUT);
 }
 
-// Every variant has the same names in the same order, and no name twice in a scope but for its
-// second interval.
+// Every variant has the same names in the same order, and no name twice in a scope.
 static void quantities_have_names_of_their_own(void **state)
 {
     fixture *f = *state;
-    cp_quantities list[2] = {{0}, {0}};
+    cp_quantities list[2] = {{0}, {0}}, contrast = {0};
+    cp_quantities_of_contrast(&f->data, &f->comparison.contrast[0], &contrast);
+    for (size_t k = 0; k < contrast.count; k++)
+        for (size_t j = 0; j < k; j++)
+            assert_false(contrast.row[j].scope == contrast.row[k].scope &&
+                         strcmp(contrast.row[j].name, contrast.row[k].name) == 0);
+    cp_quantities_destroy(&contrast);
     for (size_t v = 0; v < 2; v++)
         cp_quantities_of_variant(&f->data, &f->comparison.variant[v], &list[v]);
     assert_false(list[0].failed);
@@ -288,7 +303,7 @@ static void quantities_have_names_of_their_own(void **state)
     for (size_t k = 0; k < list[0].count; k++) {
         assert_string_equal(list[0].row[k].name, list[1].row[k].name);
         for (size_t j = 0; j < k; j++)
-            if (list[0].row[j].scope == list[0].row[k].scope && !list[0].row[k].kind)
+            if (list[0].row[j].scope == list[0].row[k].scope)
                 assert_string_not_equal(list[0].row[j].name, list[0].row[k].name);
     }
     cp_quantities_destroy(&list[0]);

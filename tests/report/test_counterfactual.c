@@ -154,7 +154,7 @@ static void answer_tells_what_became_of_the_crashes(void **state)
     for (size_t k = 0; k < 2; k++) {
         const cp_counterfactual_figures *c = &f->comparison.counterfactual[k];
         snprintf(expected, sizeof expected,
-                 "with %s %zu of %zu valid baseline crashes were avoided",
+                 "With %s %zu of %zu valid baseline crashes were avoided",
                  f->data.variant[c->variant].name, c->outcome[CP_OUTCOME_AVOIDED], c->valid);
         assert_non_null(strstr(answer, expected));
     }

@@ -77,21 +77,56 @@ static void every_kind_is_drawn(void **state)
 }
 
 // The data of a figure are those of the comparison.
-static void script_holds_the_figures(void **state)
+static void data_hold_the_figures(void **state)
 {
     fixture *f = *state;
     cp_error error = {0};
-    char *script = NULL, wanted[64];
-    assert_int_equal(cp_plot_script(f->store, &f->data, &f->comparison, CP_SCOPE_ALL, CP_PLOT_RATES,
-                                    &script, &error),
+    char *data = NULL, wanted[64];
+    assert_int_equal(cp_plot_data(f->store, &f->data, &f->comparison, CP_SCOPE_ALL, CP_PLOT_RATES,
+                                  &data, &error),
                      CP_OK);
     for (size_t k = 0; k < 2; k++) {
         const cp_variant_figures *v = &f->comparison.variant[k];
-        snprintf(wanted, sizeof wanted, "%.9g %zu %.9g %.9g\n", v->rate, k, v->rate_garwood.low,
-                 v->rate_garwood.high);
-        assert_non_null(strstr(script, wanted));
+        snprintf(wanted, sizeof wanted, "\t%.9g\t%zu\t%.9g\t%.9g\n", v->rate, k,
+                 v->rate_widened.low, v->rate_widened.high);
+        assert_non_null(strstr(data, wanted));
     }
-    free(script);
+    free(data);
+}
+
+// Names are drawn as they stand: no shell, no gnuplot and no markup takes them for its own.
+static void names_are_never_commands(void **state)
+{
+    static char *const NAME[] = {"`touch owned`",         "\"; system \"touch owned\"; #",
+                                 "$(touch owned)",        "EOD\n!touch owned\n",
+                                 "%s %n {/Bold x} \\042", "@owned"};
+    fixture *f = *state;
+    cp_error error = {0};
+    cp_study_variant *variant = &f->data.variant[f->comparison.variant[1].variant];
+    cp_study_risk *risk = &f->data.risk[0];
+    cp_study_variant variant_before = *variant;
+    cp_study_risk risk_before = *risk;
+    for (size_t n = 0; n < sizeof NAME / sizeof *NAME; n++) {
+        variant->name = risk->name = risk->level = NAME[n];
+        for (int kind = 0; kind < CP_PLOT_KIND_COUNT; kind++) {
+            if (kind == CP_PLOT_OUTCOMES || kind == CP_PLOT_CORRIDOR)
+                continue; // not of this study
+            char *svg = NULL;
+            size_t size = 0;
+            if (cp_plot_write(f->store, &f->data, &f->comparison, CP_SCOPE_ALL, (cp_plot_kind)kind,
+                              "`touch owned`\" \".svg", &error) != CP_OK ||
+                cp_file_read("`touch owned`\" \".svg", &svg, &size, &error) != CP_OK)
+                fail_msg("kind %d: %s", kind, error.text);
+            assert_non_null(strstr(svg, "</svg>"));
+            if (NAME[n][0] == '`' || NAME[n][0] == '$' || NAME[n][0] == '@')
+                assert_non_null(strstr(svg, NAME[n]));
+            free(svg);
+            unlink("`touch owned`\" \".svg");
+            assert_int_equal(access("owned", F_OK), -1);
+        }
+    }
+    *variant = variant_before;
+    *risk = risk_before;
 }
 
 static void what_cannot_be_drawn_is_said(void **state)
@@ -120,7 +155,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_is_drawn),
-        cmocka_unit_test(script_holds_the_figures),
+        cmocka_unit_test(data_hold_the_figures),
+        cmocka_unit_test(names_are_never_commands),
         cmocka_unit_test(what_cannot_be_drawn_is_said),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

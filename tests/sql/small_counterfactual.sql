@@ -31,7 +31,7 @@ FROM scenario AS s CROSS JOIN number;
 
 CREATE TEMP TABLE invented AS
 WITH RECURSIVE place(k) AS (SELECT 0 UNION ALL SELECT k + 1 FROM place WHERE k < 8)
-SELECT r.id * 1048576 + k AS id, r.id AS replication_id, r.scenario_id, k AS number,
+SELECT r.id * 16384 + k AS id, r.id AS replication_id, r.scenario_id, k AS number,
        ((r.id * 7919 + k * 104729 + 11) * 48271 % 2147483647) / 2147483647.0 AS u1,
        9.0 + 24.0 * (((r.id * 6271 + k * 15485863 + 23) * 69621 % 2147483647) / 2147483647.0)
            AS closing_speed_m_s
@@ -67,8 +67,8 @@ FROM vehicle;
 CREATE TEMP TABLE outcome AS
 WITH draw AS (
     SELECT c.*, v.id AS variant_id, v.number AS treatment,
-           ((c.id % 99991 * 15485863 + v.id * 32452843) % 2147483647) / 2147483647.0 AS u,
-           ((c.id % 99991 * 49979687) % 2147483647) / 2147483647.0 AS w
+           (((c.replication_id * 1048576 + c.number) % 99991 * 15485863 + v.id * 32452843) % 2147483647) / 2147483647.0 AS u,
+           (((c.replication_id * 1048576 + c.number) % 99991 * 49979687) % 2147483647) / 2147483647.0 AS w
     FROM crash AS c CROSS JOIN variant AS v WHERE v.is_baseline = 0
 )
 SELECT *, CASE WHEN w < 0.05 THEN 'invalid'

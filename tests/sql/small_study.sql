@@ -62,7 +62,7 @@ FROM draw;
 
 INSERT INTO crash (id, replication_id, number, time_s, x_m, y_m, crash_type, closing_speed_m_s,
                    lateral_offset_m, angle_rad, overlap_1, validity, t_common_s, separation_s, shift_m)
-SELECT replication_id * 1048576 + number, replication_id, number, 400.0 + 150.25 * number,
+SELECT replication_id * 16384 + number, replication_id, number, 400.0 + 150.25 * number,
        10.0 * u1, 5.0 * u2, crash_type, closing_speed_m_s, lateral_offset_m, angle_rad,
        CASE WHEN crash_type LIKE 'front-%' THEN max(0.0, 1.0 - abs(lateral_offset_m)) END,
        CASE WHEN crash_type <> 'front-front' THEN 'contact_side,opponent_structure'
@@ -78,7 +78,7 @@ WITH side(role, place) AS (VALUES ('a', 0), ('b', 1)), vehicle AS (
                 WHEN i.crash_type = 'front-front' THEN 'front'
                 WHEN i.crash_type = 'front-rear' THEN 'rear' ELSE 'left' END AS contact_side,
            c.validity AS crash_validity
-    FROM invented AS i JOIN crash AS c ON c.id = i.replication_id * 1048576 + i.number
+    FROM invented AS i JOIN crash AS c ON c.id = i.replication_id * 16384 + i.number
     CROSS JOIN side
 ), judged AS (
     SELECT *, CASE WHEN contact_side <> 'front' THEN 'not_front_contact'
@@ -91,7 +91,7 @@ INSERT INTO crash_vehicle (crash_id, role, scenario_id, variant_id, crash_type, 
     sumo_type, vehicle_model, at_fault, cog_x_m, cog_y_m, yaw_rad, velocity_x_m_s, velocity_y_m_s,
     yaw_rate_rad_s, speed_m_s, length_m, width_m, contact_side, validity, olc_g, olc_status,
     delta_v_m_s, peak_g, mean_g, crush_m)
-SELECT replication_id * 1048576 + number, role, scenario_id, variant_id, crash_type,
+SELECT replication_id * 16384 + number, role, scenario_id, variant_id, crash_type,
        contact_side = 'front', 'flow.' || (10 * number + place), 'car', 'mid_size_car', role = 'a',
        0.0, 0.0, 0.0, closing_speed_m_s / 2, 0.0, 0.0, closing_speed_m_s / 2, 4.8, 1.8,
        contact_side,

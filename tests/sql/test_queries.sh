@@ -65,8 +65,13 @@ expect "crashes of configuration_map" "$(sum 5 configuration_map)" \
     "$(one "SELECT count(*) FROM crash WHERE crash_type LIKE 'front-%'")"
 expect "crashes of crash_configurations" "$(sum 4 crash_configurations)" \
     "$(one 'SELECT count(*) FROM crash')"
+expect "crashes above 15 g of crashes_above_severity" \
+    "$(sqlite3 -readonly "$db" <"$queries/crashes_above_severity.sql" | awk -F'|' '$2 == 15 { print $3 }' | paste -sd' ')" \
+    "$(one "SELECT group_concat(n, ' ') FROM (SELECT count(DISTINCT crash_id) AS n FROM frontal_vehicle WHERE olc_g > 15 GROUP BY variant_id ORDER BY variant_id)")"
 expect "vehicles of validity" "$(sum 4 validity)" \
     "$(one 'SELECT count(*) FROM crash_vehicle WHERE frontal = 1')"
+expect "vehicles with one reason of validity_reasons" "$(sum 4 validity_reasons)" \
+    "$(one "SELECT count(*) FROM crash_vehicle WHERE frontal = 1 AND validity <> 'inside' AND instr(validity, ',') = 0")"
 expect "treatment crashes of paired_replications" "$(sum 6 paired_replications)" \
     "$(one "SELECT frontal_crashes FROM olc_by_variant WHERE variant = 'aeb'")"
 expect "pairs of counterfactual_pairs" "$(wc -l <"$seen/counterfactual_pairs.out" | tr -d ' ')" \

@@ -85,10 +85,10 @@ def check_pulses(db):
     assert one(db, "SELECT olc(NULL), delta_v(NULL), cfc(NULL, 60), peak(NULL)") == (None,) * 4
 
     # The filter smooths, and what it gives is a pulse again.
-    raw, smooth = one(db, "SELECT max(s.ax_m_s2) - min(s.ax_m_s2), (SELECT max(ax_m_s2) - "
-                      "min(ax_m_s2) FROM pulse_samples(cfc(p.samples, 60))) FROM pulse AS p, "
-                      "pulse_samples(p.samples) AS s WHERE p.crash_id = ? AND p.role = ?",
-                      crash, role)
+    way = ("(SELECT sum(abs(step)) FROM (SELECT ax_m_s2 - lag(ax_m_s2) OVER (ORDER BY sample) AS step "
+           "FROM pulse_samples(%s)))")
+    raw, smooth = one(db, f"SELECT {way % 'p.samples'}, {way % 'cfc(p.samples, 60)'} FROM pulse AS p "
+                      "WHERE p.crash_id = ? AND p.role = ?", crash, role)
     assert 0 < smooth < raw, (raw, smooth)
     # The pulse's four columns together do as well.
     assert one(db, "SELECT count(*) FROM pulse WHERE olc(samples) IS NOT olc(samples, codec, "
@@ -218,7 +218,46 @@ def check_hostile_blobs(db):
     assert one(db, "SELECT olc_status(?)", blob)[0] in ("value", "no_deceleration", "beyond_0_5_s")
 
 
+def check_loading(path):
+    # Again, by a statement that is running, as R does it: the same functions, no error.
+    db = sqlite3.connect(path)
+    db.enable_load_extension(True)
+    for _ in range(2):
+        assert one(db, "SELECT load_extension(?)", arguments.extension) == (None,)
+    rows = db.execute("SELECT olc_g, olc_g > 12 FROM frontal_vehicle").fetchall()
+    assert len(rows) > 5
+    for short in ("median(olc_g)", "median(olc_g, censored)", "quantile(olc_g, 0.9)",
+                  "quantile(olc_g, 0.9, censored)", "cliffs_delta(olc_g, variant = 'aeb')",
+                  "ks_distance(olc_g, variant = 'aeb', censored)"):
+        found = one(db, f"SELECT {short}, cp_{short} FROM frontal_vehicle")
+        assert found[0] == found[1], (short, found)
+    assert one(db, "SELECT count(*) FROM pulse WHERE olc(samples) IS NOT cp_olc(samples) OR "
+                   "olc_status(samples) <> cp_olc_status(samples) OR "
+                   "delta_v(samples) <> cp_delta_v(samples) OR peak(samples) <> cp_peak(samples) OR "
+                   "cfc(samples, 60) <> cp_cfc(samples, 60)") == (0,)
+    assert one(db, "SELECT (SELECT count(*) FROM pulse_samples(p.crash_id, p.role)) = "
+                   "(SELECT count(*) FROM cp_pulse_samples(p.crash_id, p.role)) FROM pulse AS p") == (1,)
+    assert "cp_median" not in error_of(db, "SELECT cp_median('a')")
+
+    # A connection with a median of its own keeps it, and has ours under its other name.
+    class Own:
+        def step(self, _):
+            pass
+
+        def finalize(self):
+            return -1
+
+    db = sqlite3.connect(path)
+    db.create_aggregate("median", 1, Own)
+    db.enable_load_extension(True)
+    assert one(db, "SELECT load_extension(?)", arguments.extension) == (None,)
+    values = sorted(row[0] for row in db.execute("SELECT olc_g FROM frontal_vehicle WHERE olc_g > 0"))
+    assert one(db, "SELECT median(olc_g), cp_median(olc_g) FROM frontal_vehicle WHERE olc_g > 0") == \
+        (-1, statistics.median(values))
+
+
 if arguments.db:
+    check_loading(arguments.db)
     connection = sqlite3.connect(arguments.db)
     connection.enable_load_extension(True)
     connection.load_extension(arguments.extension)

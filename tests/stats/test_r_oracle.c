@@ -75,18 +75,13 @@ static void rank_statistics(void **state)
     cp_resampling r = resampling_of(x.cluster_count, y.cluster_count);
     cp_contrast c;
     cp_error error = {0};
-    assert_int_equal(cp_contrast_samples(&x, &y, &r, 20000, &c, &error), CP_OK);
-    assert_close(c.mann_whitney.statistic, R_MANN_WHITNEY_U_P[0]);
-    assert_close(c.kolmogorov_smirnov.statistic, R_KS_D_P[0]);
-    assert_close(c.cliffs_delta, R_CLIFFS_DELTA[0]);
+    assert_int_equal(cp_contrast_samples(&x, &y, &r, &c, &error), CP_OK);
+    double pairs = (double)(x.count * y.count);
+    assert_close(0.5 * (c.superiority.cliffs_delta + 1.0) * pairs, R_MANN_WHITNEY_U_P[0]);
+    assert_close(c.distance, R_KS_D_P[0]);
+    assert_close(c.superiority.cliffs_delta, R_CLIFFS_DELTA[0]);
     assert_close(c.median_difference.value, R_Y_QUANTILES[2] - R_X_QUANTILES[2]);
     assert_close(c.p90_difference.value, R_Y_QUANTILES[4] - R_X_QUANTILES[4]);
-    // With one value a cluster the permutation p is the exact test's, up to 20000 draws.
-    for (int k = 0; k < 2; k++) {
-        double exact = k ? R_KS_D_P[1] : R_MANN_WHITNEY_U_P[1];
-        double found = k ? c.kolmogorov_smirnov.p : c.mann_whitney.p;
-        assert_near(found, exact, 4.0 * sqrt(exact * (1.0 - exact) / 20000.0) + 1e-4);
-    }
     cp_sample_destroy(&x);
     cp_sample_destroy(&y);
 }
@@ -103,12 +98,83 @@ static void rank_statistics_with_ties(void **state)
     cp_resampling r = resampling_of(x.cluster_count, y.cluster_count);
     cp_contrast c;
     cp_error error = {0};
-    assert_int_equal(cp_contrast_samples(&x, &y, &r, 0, &c, &error), CP_OK);
-    assert_close(c.mann_whitney.statistic, R_TIED_U[0]);
-    assert_close(c.cliffs_delta, R_TIED_DELTA[0]);
-    assert_close(c.kolmogorov_smirnov.statistic, R_TIED_KS_D[0]);
+    assert_int_equal(cp_contrast_samples(&x, &y, &r, &c, &error), CP_OK);
+    double pairs = (double)(x.count * y.count);
+    assert_close(0.5 * (c.superiority.cliffs_delta + 1.0) * pairs, R_TIED_U[0]);
+    assert_close(c.superiority.cliffs_delta, R_TIED_DELTA[0]);
+    assert_close(c.distance, R_TIED_KS_D[0]);
     cp_sample_destroy(&x);
     cp_sample_destroy(&y);
+}
+
+static void assert_superiority(const cp_superiority *s, const double *expected)
+{
+    assert_close(s->cliffs_delta, expected[0]);
+    assert_close(s->standard_error, expected[1]);
+    assert_close(s->freedom, expected[2]);
+    assert_close(s->p, expected[3]);
+    assert_close(s->interval.low, expected[4]);
+    assert_close(s->interval.high, expected[5]);
+}
+
+// Clusters of any size, ties, strata: delta, its jackknife, degrees of freedom, p and interval.
+static void superiority_of_clusters(void **state)
+{
+    (void)state;
+    enum { CLUSTERS = COUNT(R_RANK_STRATUM) };
+    cp_sample a = sample_of(R_RANK_A, R_RANK_A_CLUSTER, COUNT(R_RANK_A), CLUSTERS);
+    cp_sample b = sample_of(R_RANK_B, R_RANK_B_CLUSTER, COUNT(R_RANK_B), CLUSTERS);
+    size_t stratum[CLUSTERS];
+    for (size_t c = 0; c < CLUSTERS; c++)
+        stratum[c] = (size_t)R_RANK_STRATUM[c];
+    const double *const expected[2][2] = {{R_RANK_APART, R_RANK_PAIRED},
+                                          {R_RANK_STRATA_APART, R_RANK_STRATA_PAIRED}};
+    cp_contrast c;
+    cp_error error = {0};
+    for (int strata = 0; strata < 2; strata++) {
+        for (int paired = 0; paired < 2; paired++) {
+            cp_resampling r = resampling_of(CLUSTERS, CLUSTERS);
+            r.paired = paired;
+            r.stratum[0] = r.stratum[1] = strata ? stratum : NULL;
+            assert_int_equal(cp_contrast_samples(&a, &b, &r, &c, &error), CP_OK);
+            assert_superiority(&c.superiority, expected[strata][paired]);
+        }
+    }
+    assert_close(c.mean_difference.value, R_MIXED_DIFFERENCE[0]);
+    assert_close(c.median_difference.value, R_MIXED_DIFFERENCE[1]);
+    assert_close(c.p90_difference.value, R_MIXED_DIFFERENCE[2]);
+    cp_sample_destroy(&a);
+    cp_sample_destroy(&b);
+}
+
+// Mantel and Haenszel's ratio and intervals widened by dispersion.
+static void widened_rates(void **state)
+{
+    (void)state;
+    enum { CLUSTERS = COUNT(R_MH_YA) };
+    size_t stratum[CLUSTERS];
+    for (size_t c = 0; c < CLUSTERS; c++)
+        stratum[c] = (size_t)R_RANK_STRATUM[c];
+    cp_exposure a = {CLUSTERS, R_MH_YA, R_MH_XA}, b = {CLUSTERS, R_MH_YB, R_MH_XB};
+    for (int paired = 0; paired < 2; paired++) {
+        const double *expected = paired ? R_MH_PAIRED : R_MH_APART;
+        cp_resampling r = resampling_of(CLUSTERS, CLUSTERS);
+        r.paired = paired;
+        r.stratum[0] = r.stratum[1] = stratum;
+        cp_widening w;
+        cp_interval i = cp_rate_ratio_widened(&a, &b, &r, &w);
+        assert_close(cp_rate_ratio(&a, &b, stratum, stratum), expected[0]);
+        assert_close(w.dispersion_1, expected[1]);
+        assert_close(w.factor_1, expected[2]);
+        assert_close(i.low, expected[3]);
+        assert_close(i.high, expected[4]);
+    }
+    cp_widening w;
+    cp_interval i = cp_rate_widened(&a, stratum, 0.95, &w);
+    assert_close(w.dispersion_1, R_WIDENED_RATE[0]);
+    assert_close(w.factor_1, R_WIDENED_RATE[1]);
+    assert_close(i.low, R_WIDENED_RATE[2]);
+    assert_close(i.high, R_WIDENED_RATE[3]);
 }
 
 static void paired_statistics(void **state)
@@ -171,7 +237,7 @@ static void counts_and_rates(void **state)
     const double b = 31, a = 52, km_b = 8123.5, km_a = 7904.25;
     cp_exposure ea = {1, &a, &km_a}, eb = {1, &b, &km_b};
     cp_interval ratio = cp_rate_ratio_poisson(&ea, &eb, 0.95);
-    assert_close(cp_rate_ratio(&ea, &eb), R_RATE_RATIO[0]);
+    assert_close(cp_rate_ratio(&ea, &eb, NULL, NULL), R_RATE_RATIO[0]);
     assert_close(ratio.low, R_RATE_RATIO[1]);
     assert_close(ratio.high, R_RATE_RATIO[2]);
     cp_exposure e = {COUNT(R_COUNTS), R_COUNTS, R_KM};
@@ -319,6 +385,8 @@ int main(void)
         cmocka_unit_test(descriptions),
         cmocka_unit_test(rank_statistics),
         cmocka_unit_test(rank_statistics_with_ties),
+        cmocka_unit_test(superiority_of_clusters),
+        cmocka_unit_test(widened_rates),
         cmocka_unit_test(paired_statistics),
         cmocka_unit_test(hodges_lehmann_of_a_resample),
         cmocka_unit_test(counts_and_rates),

@@ -122,7 +122,7 @@ static void what_is_negligible_is_said_beside_the_baseline(void **state)
              "vehicle_h = 0.5, vehicle_km = 12.5; WITH RECURSIVE n(k) AS (SELECT 0 UNION ALL "
              "SELECT k + 1 FROM n WHERE k < 19) INSERT INTO crash (id, replication_id, number, "
              "time_s, x_m, y_m, crash_type, closing_speed_m_s, lateral_offset_m, angle_rad, "
-             "validity, shift_m) SELECT r.id * 1048576 + k, r.id, k, 1, 0, 0, 'front-side', 9, 0, "
+             "validity, shift_m) SELECT r.id * 16384 + k, r.id, k, 1, 0, 0, 'front-side', 9, 0, "
              "0, 'inside', 0 FROM replication AS r, n WHERE r.variant_id = (SELECT id FROM variant "
              "WHERE is_baseline)\"",
              f->db);

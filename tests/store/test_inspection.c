@@ -17,7 +17,8 @@ static cp_store *open_finished(const fixture *f)
 static void break_by(const fixture *f, const char *sql)
 {
     char command[1024];
-    snprintf(command, sizeof command, "sqlite3 '%s' \"%s\"", f->db, sql);
+    snprintf(command, sizeof command,
+             "sqlite3 -cmd '.dbconfig enable_trigger off' '%s' \"%s\" > /dev/null", f->db, sql);
     assert_int_equal(system(command), 0);
 }
 
@@ -59,8 +60,7 @@ static void dangling_reference(void **state)
 static void copy_that_lies(void **state)
 {
     cp_store_close(open_finished(*state));
-    break_by(*state, "DROP TRIGGER crash_vehicle_copies_stay; UPDATE crash_vehicle SET variant_id "
-                     "= 1 WHERE role = 'a'");
+    break_by(*state, "UPDATE crash_vehicle SET variant_id = 1 WHERE role = 'a'");
     assert_found(*state, "copies in crash_vehicle", "does not agree with its crash");
 }
 

@@ -53,20 +53,32 @@ static char *output_of(const char *db, const char *sql)
     return text;
 }
 
+// Ids of replications and crashes as they are now; before, they did not fit into a double.
+#define NEW_REPLICATION "replication_id"
+#define NEW_CRASH "crash_id"
+#define OLD_REPLICATION "replication_id >> 3"
+#define OLD_CRASH "(crash_id >> 23) * 16384 + (crash_id & 1048575)"
+
+#define ROWS_OF_VERSION_1(replication, crash)                                                      \
+    "SELECT id, name, design, seed, yaml, hash FROM study; SELECT id, name, sumocfg, files "       \
+    "FROM scenario; SELECT * FROM variant; SELECT " replication ", scenario_id, variant_id, "      \
+    "sweep, number, seed, status, configuration_hash, vehicle_km, counters FROM (SELECT id AS "    \
+    "replication_id, * FROM replication) ORDER BY 1; SELECT " crash ", time_s, "                   \
+    "closing_speed_m_s, shift_m FROM (SELECT id AS crash_id, * FROM crash) ORDER BY 1; "           \
+    "SELECT " crash                                                                                \
+    ", role, sumo_id, yaw_rad, olc_g, delta_v_m_s, end_s FROM crash_vehicle ORDER BY 1, "          \
+    "2; SELECT " crash ", role, codec, sample_interval_s, sample_count, hex(samples) FROM pulse "  \
+    "ORDER BY 1, 2; SELECT " replication                                                           \
+    ", number, time_s, x_m, y_m, verdict, vehicle_1, vehicle_2 FROM contact; SELECT " replication  \
+    ", number, time_s, collider, "                                                                 \
+    "victim, sumo_type, found_as FROM sumo_collision; SELECT " replication                         \
+    ", number, host, pid, outcome FROM attempt; SELECT name, hash, yaml FROM vehicle_model"
+
 // What the first version knew, column by column, of the tables it had.
-static char *rows_of_version_1(const char *db)
+static char *rows_of_version_1(const char *db, bool old_ids)
 {
-    return output_of(
-        db, "SELECT id, name, design, seed, yaml, hash FROM study; SELECT id, name, sumocfg, files "
-            "FROM scenario; SELECT * FROM variant; SELECT id, scenario_id, variant_id, sweep, "
-            "number, seed, status, configuration_hash, vehicle_km, counters FROM replication ORDER "
-            "BY id; SELECT id, time_s, closing_speed_m_s, shift_m FROM crash ORDER BY id; SELECT "
-            "crash_id, role, sumo_id, yaw_rad, olc_g, delta_v_m_s, end_s FROM crash_vehicle ORDER "
-            "BY 1, 2; SELECT * FROM pulse ORDER BY 1, 2; SELECT * FROM contact; SELECT "
-            "replication_id, number, time_s, "
-            "collider, victim, sumo_type, found_as FROM sumo_collision; SELECT replication_id, "
-            "number, host, pid, outcome FROM attempt; "
-            "SELECT name, hash, yaml FROM vehicle_model");
+    return output_of(db, old_ids ? ROWS_OF_VERSION_1(OLD_REPLICATION, OLD_CRASH)
+                                 : ROWS_OF_VERSION_1(NEW_REPLICATION, NEW_CRASH));
 }
 
 // Every table, view, index and trigger with its columns, however it came to be.
@@ -77,6 +89,20 @@ static char *structure(const char *db)
         "SELECT m.type, m.name, m.tbl_name, p.cid, p.name, p.type, p.\\\"notnull\\\", p.pk FROM "
         "sqlite_schema AS m LEFT JOIN pragma_table_info(m.name) AS p WHERE m.name NOT LIKE "
         "'sqlite_stat%' ORDER BY 1, 2, 4");
+}
+
+// The first version whose ids are what they are now.
+static int version_of_ids(void)
+{
+    char command[2048];
+    int version = 0;
+    snprintf(command, sizeof command, "ls '%s'/db/schema/*_ids_in_doubles.sql | sed 's/.*\\///'",
+             source());
+    FILE *pipe = popen(command, "r");
+    assert_non_null(pipe);
+    assert_int_equal(fscanf(pipe, "%d", &version), 1);
+    pclose(pipe);
+    return version;
 }
 
 static void migrates_from_every_version(void **state)
@@ -93,7 +119,7 @@ static void migrates_from_every_version(void **state)
     for (int version = 1; version < CP_STORE_VERSION; version++) {
         print_message("from version %d to %d\n", version, CP_STORE_VERSION);
         make_version(f->db, version);
-        char *before = rows_of_version_1(f->db);
+        char *before = rows_of_version_1(f->db, version < version_of_ids());
 
         // Reading does not change it, and says what would.
         assert_int_equal(cp_store_open(f->db, CP_STORE_READ, &store, &error), CP_BAD_INPUT);
@@ -107,7 +133,7 @@ static void migrates_from_every_version(void **state)
         assert_int_equal(inspection.wrong, 0);
         cp_store_close(store);
 
-        char *after = rows_of_version_1(f->db);
+        char *after = rows_of_version_1(f->db, false);
         char *found = structure(f->db);
         assert_string_equal(after, before);
         assert_string_equal(found, wanted);
@@ -116,6 +142,52 @@ static void migrates_from_every_version(void **state)
         free(found);
     }
     free(wanted);
+}
+
+// Every row that names a replication or a crash names the same one after its id became one that a
+// double holds; numbers that do not fit leave the database as it was.
+static void ids_become_whole_numbers_of_a_double(void **state)
+{
+    const fixture *f = *state;
+    cp_store *store = NULL;
+    cp_error error = {0};
+    make_version(f->db, version_of_ids() - 1);
+    shell("sqlite3 '%s' \"INSERT INTO crash SELECT id + 100, replication_id, number + 100, time_s, "
+          "x_m, "
+          "y_m, crash_type, closing_speed_m_s, lateral_offset_m, angle_rad, overlap_1, validity, "
+          "t_common_s, separation_s, shift_m, 1, id FROM crash ORDER BY id LIMIT 1\"",
+          f->db);
+    assert_ok(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), &error);
+    assert_true(number_of(store, "SELECT count(*) FROM crash WHERE id >= 9007199254740992") == 0);
+    assert_true(number_of(store, "SELECT count(*) FROM crash WHERE typeof(id) = 'integer' AND "
+                                 "id = CAST(CAST(id AS REAL) AS INTEGER)") == 6);
+    assert_true(number_of(store,
+                          "SELECT count(*) FROM crash_vehicle JOIN crash AS c ON c.id = "
+                          "crash_id JOIN replication AS r ON r.id = c.replication_id") == 10);
+    assert_true(number_of(store, "SELECT count(*) FROM crash AS c JOIN crash AS o ON o.id = "
+                                 "c.follows_crash_id WHERE c.number = o.number + 100") == 1);
+    assert_true(number_of(store, "SELECT count(*) FROM pragma_foreign_key_check") == 0);
+    assert_true(number_of(store, "SELECT count(*) FROM sqlite_schema WHERE sql LIKE '%1048575%'") ==
+                0);
+    cp_store_close(store);
+
+    // The rule holds for what comes next.
+    shell("! sqlite3 '%s' 'UPDATE crash SET number = number + 1' 2>/dev/null", f->db);
+
+    // A replication of more crashes than there is room for: nothing is changed.
+    make_version(f->db, version_of_ids() - 1);
+    shell("sqlite3 '%s' \"INSERT INTO crash SELECT id + 20000, replication_id, number + 20000, "
+          "time_s, "
+          "x_m, y_m, crash_type, closing_speed_m_s, lateral_offset_m, angle_rad, overlap_1, "
+          "validity, t_common_s, separation_s, shift_m, 0, NULL FROM crash ORDER BY id LIMIT 1\"",
+          f->db);
+    char *before = rows_of_version_1(f->db, false);
+    assert_int_equal(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), CP_STORE_FAILED);
+    assert_non_null(strstr(error.text, "CHECK"));
+    char *after = rows_of_version_1(f->db, false);
+    assert_string_equal(after, before);
+    free(before);
+    free(after);
 }
 
 // What version 6 counted of a network's background are as many contacts, and a row of their run.
@@ -223,6 +295,8 @@ static void migrates_once_for_many(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(ids_become_whole_numbers_of_a_double, fixture_begin,
+                                        fixture_end),
         cmocka_unit_test_setup_teardown(migrates_from_every_version, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(counted_backgrounds_become_contacts, fixture_begin,
                                         fixture_end),

@@ -205,7 +205,7 @@ static void id_collision_is_an_error(void **state)
 static void row_ids_are_fixed_for_good(void **state)
 {
     (void)state;
-    // printf 'crossing|aeb||100' | sha256sum, first 42 bits
+    // printf 'crossing|aeb||100' | sha256sum, first 39 bits
     FILE *shell = popen("printf 'crossing|aeb||100' | sha256sum", "r");
     char hex[12] = "";
     assert_non_null(shell);
@@ -214,7 +214,7 @@ static void row_ids_are_fixed_for_good(void **state)
         continue;
     assert_int_equal(pclose(shell), 0);
     assert_true(cp_replication_row_id("crossing", "aeb", "", 100) ==
-                (int64_t)(strtoull(hex, NULL, 16) >> 2));
+                (int64_t)(strtoull(hex, NULL, 16) >> 5));
 }
 
 int main(void)

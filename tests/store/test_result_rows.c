@@ -18,7 +18,7 @@ static void commit_is_complete(void **state)
                           "SELECT count(*) FROM crash JOIN crash_vehicle ON crash_id = id "
                           "WHERE crash.crash_type = 'front-front' AND "
                           "crash_vehicle.crash_type = 'front-front' AND t_v0_s IS NULL") == 4);
-    assert_true(number_of(store, "SELECT max(id - replication_id * 1048576) FROM crash") == 1);
+    assert_true(number_of(store, "SELECT max(id - replication_id * 16384) FROM crash") == 1);
     assert_true(number_of(store, "SELECT crashes_per_million_km FROM crash_rate_by_variant WHERE "
                                  "variant = 'baseline'") == 40000);
     cp_store_close(store);
@@ -104,7 +104,7 @@ static void pulse_comes_back(void **state)
     vehicle->sample_count = 201;
     vehicle->sample_interval_s = 0.001;
     assert_ok(cp_result_rows_commit(store, &results, &error), &error);
-    int64_t crash_id = results.replication_id * 1048576;
+    int64_t crash_id = results.replication_id * 16384;
     assert_ok(cp_result_pulse_read(store, crash_id, "b", &back, &error), &error);
     assert_int_equal(back.sample_count, 201);
     assert_true(fabs(back.channel[CP_CHANNEL_VX][200] + 1.5) < 1e-9);

@@ -51,7 +51,7 @@ static int64_t commit_simulated(cp_store *store, const small_plan *plan)
     assert_ok(cp_result_rows_commit(store, &rows, &error), &error);
     cp_result_rows_destroy(&rows);
     cp_crash_result_destroy(&result);
-    return plan->replication[0].id * 1048576;
+    return plan->replication[0].id * 16384;
 }
 
 static cp_store *open_simulated(const fixture *f, int64_t *id)

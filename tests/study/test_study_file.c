@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/controls_text.h"
 #include "study/fixture.h"
 
 static void reads_everything(void **state)
@@ -44,6 +45,60 @@ static void reads_everything(void **state)
     assert_int_equal(study.vehicle_count, 2);
     assert_null(study.vehicles[0].type);
     assert_string_equal(study.vehicles[1].type, "van");
+    cp_study_destroy(&study);
+}
+
+// Everything the study reads by key path, aliased: what is run must be what stands at the anchor.
+static void aliases_stand_for_what_they_name(void **state)
+{
+    const fixture *f = *state;
+    cp_study study;
+    cp_error error = {0};
+    char *text = study_with("variants:\n  - name: baseline\n    functions: []\n",
+                            "  - name: again\n"
+                            "    sumocfg: a.sumocfg\n"
+                            "    driver_errors: &errors\n"
+                            "      - model: failed_to_see\n"
+                            "        parameters: &p {probability_1: &number 0.125}\n"
+                            "  - {name: third, sumocfg: a.sumocfg, driver_errors: *errors}\n"
+                            "variants:\n"
+                            "  - {name: baseline, functions: []}\n"
+                            "  - name: one\n"
+                            "    functions: &functions\n"
+                            "      - function: aeb\n"
+                            "        parameters: &aeb {ttc_s: 4.5, deceleration_m_s2: 2}\n"
+                            "        equipment: &cars [{type: car, penetration_1: 0.5}]\n"
+                            "  - {name: two, functions: *functions}\n"
+                            "  - name: three\n"
+                            "    functions:\n"
+                            "      - {function: aeb, parameters: *aeb, equipment: *cars}\n"
+                            "  - name: four\n"
+                            "    functions: [{function: aeb, parameters: {ttc_s: *number}}]\n");
+    write_text(f, "study.yaml", text);
+    free(text);
+    assert_ok(cp_study_load(f->study, &study, &error), &error);
+    for (size_t k = 1; k < 3; k++)
+        assert_true(study.scenarios[k].driver_errors[0].parameter[0] == 0.125);
+    for (size_t k = 1; k < 4; k++) {
+        const cp_control_settings *aeb = &study.variants[k].functions[0];
+        for (size_t p = 0; p < aeb->type->parameter_count; p++) {
+            if (strcmp(aeb->type->parameters[p].name, "ttc_s") == 0)
+                assert_true(aeb->parameter[p] == 4.5);
+            if (strcmp(aeb->type->parameters[p].name, "deceleration_m_s2") == 0)
+                assert_true(aeb->parameter[p] == 2.0);
+        }
+        assert_int_equal(aeb->share_count, 1);
+        assert_true(aeb->shares[0].penetration_1 == 0.5);
+    }
+    char *said = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&said, &size);
+    assert_non_null(out);
+    cp_controls_text_variant(&study, 4, out);
+    fclose(out);
+    assert_non_null(strstr(said, "variant four: functions aeb ("));
+    assert_non_null(strstr(said, "ttc_s 0.125"));
+    free(said);
     cp_study_destroy(&study);
 }
 
@@ -161,8 +216,9 @@ static const struct {
      "variants[1].functions must be empty: the baseline of a counterfactual study drives without "
      "functions, found 1"},
     {"[--scale, \"0.5\"]", "[--load-state, state.xml]",
-     "study.yaml:11: scenarios[0].sumo_options must not begin with a saved state (load-state)"},
-    {"[--scale, \"0.5\"]", "[--load-state=state.xml]", "scenarios[0].sumo_options must not begin"},
+     "study.yaml:11: scenarios[0].sumo_options load-state must not be set, found 'state.xml'"},
+    {"[--scale, \"0.5\"]", "[--load-state=state.xml]",
+     "scenarios[0].sumo_options load-state must not be set"},
     // Structure: libcyaml's part.
     {"warmup_s: 60", "warmup: 60", "study.yaml:7: Unexpected key: warmup"},
     {"seed: 20261122\n", "", "Missing required mapping field: seed"},
@@ -238,7 +294,7 @@ static void no_scenario_begins_with_a_saved_state(void **state)
         write_text(f, "a.sumocfg", CASES[k].sumocfg);
         assert_int_equal(cp_study_load(f->study, &study, &error), CASES[k].status);
         if (CASES[k].status != CP_OK)
-            assert_non_null(strstr(error.text, "a.sumocfg: must not begin with a saved state"));
+            assert_non_null(strstr(error.text, "load-state must not be set, found 's.xml.gz'"));
         cp_study_destroy(&study);
     }
 }
@@ -259,6 +315,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(reads_everything, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(aliases_stand_for_what_they_name, fixture_begin,
+                                        fixture_end),
         cmocka_unit_test_setup_teardown(after_a_crash_and_before_it, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(background_has_a_length_of_its_own_or_none, fixture_begin,
                                         fixture_end),

@@ -296,7 +296,7 @@ static cp_status react(lane_drift *self, const cp_control_context *context, cp_e
         if (self->drivers[k].phase != ATTENTIVE)
             status = cp_oncoming_reaction_notice(
                 &self->reaction, &self->reaction_settings, self->traffic, &self->neighbourhood,
-                self->drivers[k].vehicle, context->seed_key, error);
+                context->view, self->drivers[k].vehicle, context->seed_key, error);
     if (status == CP_OK)
         status = cp_oncoming_reaction_step(&self->reaction, &self->reaction_settings, self->traffic,
                                            context->actuation, error);

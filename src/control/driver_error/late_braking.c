@@ -3,7 +3,7 @@
 
 #include "control/brake.h"
 #include "control/neighbourhood.h"
-#include "control/ttc.h"
+#include "control/road_view.h"
 #include "core/geometry.h"
 #include "core/units.h"
 
@@ -143,29 +143,25 @@ static cp_status end(late_braking *self, const cp_control_context *context, driv
     return status == CP_OK ? commands->set_speed_mode(own->vehicle, 27, error) : status;
 }
 
-static cp_moving_rectangle moving_of(const cp_vehicle_state *state)
-{
-    cp_vec2 heading = cp_vec2_heading(state->yaw_rad);
-    cp_vec2 front_m = {state->front_x_m, state->front_y_m};
-    return (cp_moving_rectangle){
-        .rectangle = {cp_vec2_sub(front_m, cp_vec2_scale(heading, 0.5 * state->length_m)),
-                      state->yaw_rad, state->length_m, state->width_m},
-        .velocity_m_s = cp_vec2_scale(heading, state->speed_m_s)};
-}
-
 /* A look ahead. */
 typedef struct look {
-    const cp_vehicle_state *own;
+    cp_road_view *view;
+    const cp_vehicle_motion *own;
     bool is_danger;
+    cp_status status;
+    cp_error *error;
 } look;
 
 static void look_at(void *context, const cp_vehicle_motion *motion)
 {
     look *looking = context;
-    if (looking->is_danger || motion->after.vehicle == looking->own->vehicle)
+    double time_s;
+    if (looking->is_danger || looking->status != CP_OK ||
+        motion->after.vehicle == looking->own->after.vehicle)
         return;
-    cp_moving_rectangle own = moving_of(looking->own), other = moving_of(&motion->after);
-    looking->is_danger = cp_ttc_s(&own, &other, DANGER_S) < DANGER_S;
+    looking->status =
+        cp_road_view_ttc_s(looking->view, looking->own, motion, DANGER_S, &time_s, looking->error);
+    looking->is_danger = looking->status == CP_OK && time_s < DANGER_S;
 }
 
 // Brake as the profile asks from looking up on.
@@ -185,7 +181,8 @@ static cp_status brake(late_braking *self, const cp_control_context *context, dr
 static cp_status step_driver(late_braking *self, const cp_control_context *context, driver *own,
                              cp_error *error)
 {
-    const cp_vehicle_state *state = &cp_traffic_motion_of(self->traffic, own->vehicle)->after;
+    const cp_vehicle_motion *motion = cp_traffic_motion_of(self->traffic, own->vehicle);
+    const cp_vehicle_state *state = &motion->after;
     double now_s = cp_traffic_time_s(self->traffic);
     double end_s = now_s + cp_traffic_step_length_s(self->traffic);
     cp_status status = CP_OK;
@@ -205,9 +202,11 @@ static cp_status step_driver(late_braking *self, const cp_control_context *conte
         own->commanded_until_s = own->look_up_s;
         own->danger_seen_s = -INFINITY;
     }
-    look looking = {state, false};
+    look looking = {context->view, motion, false, CP_OK, error};
     cp_neighbourhood_visit(&self->neighbourhood, state->front_x_m, state->front_y_m, look_at,
                            &looking);
+    if (looking.status != CP_OK)
+        return looking.status;
     if (looking.is_danger) {
         self->braked_late += own->danger_seen_s == -INFINITY;
         own->danger_seen_s = now_s;

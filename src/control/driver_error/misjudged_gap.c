@@ -3,6 +3,7 @@
 
 #include "control/driver_error/ignored_foes.h"
 #include "control/neighbourhood.h"
+#include "control/road_view.h"
 #include "core/geometry.h"
 #include "core/units.h"
 
@@ -121,6 +122,7 @@ typedef struct look {
     misjudged_gap *self;
     const cp_control_context *context;
     const cp_vehicle_state *ego;
+    const cp_vehicle_motion *motion; /* his */
     cp_status status;
     cp_error *error;
 } look;
@@ -143,6 +145,23 @@ static bool is_candidate(const look *looking, const cp_vehicle_state *foe)
     return across_rad > CP_PI / 6.0 && aim_1 > 0.7;
 }
 
+// Whether the road the other is on leads here: on a bridge it does not, however well he aims.
+static bool leads_here(look *looking, const cp_vehicle_motion *foe)
+{
+    cp_road_view *view = looking->context->view;
+    const cp_lane_ahead *way = NULL;
+    bool meet = false;
+    looking->status = cp_road_view_way(view, foe, CP_WAY_STRAIGHT, &way, looking->error);
+    cp_mover ego = cp_mover_inside(looking->motion, NULL, 1.0);
+    cp_mover other = cp_mover_inside(foe, way, 1.0);
+    ego.now.velocity_m_s = (cp_vec2){0.0, 0.0};
+    double arrival_s = sqrt(cp_front_distance_m2(looking->motion, foe)) / foe->after.speed_m_s;
+    if (looking->status == CP_OK)
+        looking->status = cp_road_view_meet(view, looking->motion, &ego, foe, &other, arrival_s,
+                                            &meet, looking->error);
+    return looking->status == CP_OK && meet;
+}
+
 static void look_at(void *context, const cp_vehicle_motion *motion)
 {
     look *looking = context;
@@ -155,7 +174,8 @@ static void look_at(void *context, const cp_vehicle_motion *motion)
                                      cp_traffic_vehicle_id(traffic, looking->ego->vehicle));
     key = cp_rng_key_text(key, cp_traffic_vehicle_id(traffic, foe->vehicle));
     if (cp_rng_uniform(key, 0) < looking->context->parameter[PROBABILITY_1] &&
-        !is_decided(looking->self, looking->ego->vehicle, foe->vehicle))
+        !is_decided(looking->self, looking->ego->vehicle, foe->vehicle) &&
+        leads_here(looking, motion))
         looking->status = decide(looking->self, looking->context, looking->ego->vehicle,
                                  foe->vehicle, looking->error);
 }
@@ -174,7 +194,7 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
     double reach_m = fastest_m_s * context->parameter[GAP_MAX_S];
     cp_status status = cp_neighbourhood_fill(&self->neighbourhood, reach_m, motions, count, error);
     for (size_t k = 0; k < count && status == CP_OK; k++) {
-        look looking = {self, context, &motions[k].after, CP_OK, error};
+        look looking = {self, context, &motions[k].after, &motions[k], CP_OK, error};
         cp_neighbourhood_visit(&self->neighbourhood, motions[k].after.front_x_m,
                                motions[k].after.front_y_m, look_at, &looking);
         status = looking.status;

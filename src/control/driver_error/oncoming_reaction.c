@@ -2,7 +2,6 @@
 #include "control/driver_error/oncoming_reaction.h"
 
 #include "control/brake.h"
-#include "control/ttc.h"
 #include "core/units.h"
 
 #include <stdlib.h>
@@ -25,30 +24,13 @@ void cp_oncoming_reaction_destroy(cp_oncoming_reaction *reaction)
     *reaction = (cp_oncoming_reaction){0};
 }
 
-// The vehicle as it moves now: along its chord, so that drifting shows.
-static cp_moving_rectangle moving_of(const cp_vehicle_motion *motion)
-{
-    const cp_vehicle_state *state = &motion->after;
-    cp_vec2 heading = cp_vec2_heading(state->yaw_rad);
-    cp_vec2 front_m = {state->front_x_m, state->front_y_m};
-    return (cp_moving_rectangle){
-        .rectangle = {cp_vec2_sub(front_m, cp_vec2_scale(heading, 0.5 * state->length_m)),
-                      state->yaw_rad, state->length_m, state->width_m},
-        .velocity_m_s = cp_vec2_scale(heading, state->speed_m_s)};
-}
-
-static double ttc_s(const cp_vehicle_motion *own, const cp_vehicle_motion *other, double horizon_s)
-{
-    cp_moving_rectangle one = moving_of(own), two = moving_of(other);
-    return cp_ttc_s(&one, &two, horizon_s);
-}
-
 /* A look for those who come towards a drifting car. */
 typedef struct look {
     cp_oncoming_reaction *reaction;
     const cp_oncoming_reaction_settings *settings;
     const cp_traffic *traffic;
     const cp_vehicle_motion *drifting;
+    cp_road_view *view;
     cp_rng_key seed_key;
     cp_status status;
     cp_error *error;
@@ -97,9 +79,10 @@ static void look_at(void *context, const cp_vehicle_motion *motion)
     if (looking->status != CP_OK || motion->after.vehicle == drifting->vehicle ||
         across_rad < 0.5 * CP_PI)
         return;
-    double horizon_s = looking->settings->notice_ttc_s;
-    double time_s = ttc_s(motion, looking->drifting, horizon_s);
-    if (!(time_s < horizon_s))
+    double horizon_s = looking->settings->notice_ttc_s, time_s;
+    looking->status = cp_road_view_ttc_s(looking->view, motion, looking->drifting, horizon_s,
+                                         &time_s, looking->error);
+    if (looking->status != CP_OK || !(time_s < horizon_s))
         return;
 
     // It falls by a second each second: the threshold was crossed inside the step.
@@ -116,13 +99,13 @@ static void look_at(void *context, const cp_vehicle_motion *motion)
 cp_status cp_oncoming_reaction_notice(cp_oncoming_reaction *reaction,
                                       const cp_oncoming_reaction_settings *settings,
                                       const cp_traffic *traffic,
-                                      const cp_neighbourhood *neighbourhood, uint32_t drifting,
-                                      cp_rng_key seed_key, cp_error *error)
+                                      const cp_neighbourhood *neighbourhood, cp_road_view *view,
+                                      uint32_t drifting, cp_rng_key seed_key, cp_error *error)
 {
     const cp_vehicle_motion *motion = cp_traffic_motion_of(traffic, drifting);
     if (motion == NULL)
         return CP_OK;
-    look looking = {reaction, settings, traffic, motion, seed_key, CP_OK, error};
+    look looking = {reaction, settings, traffic, motion, view, seed_key, CP_OK, error};
     cp_neighbourhood_visit(neighbourhood, motion->after.front_x_m, motion->after.front_y_m, look_at,
                            &looking);
     return looking.status;

@@ -4,6 +4,7 @@
 
 #include "control/actuation.h"
 #include "control/neighbourhood.h"
+#include "control/road_view.h"
 #include "core/rng.h"
 #include "traffic/traffic.h"
 
@@ -30,13 +31,14 @@ typedef struct cp_oncoming_reaction {
 void cp_oncoming_reaction_destroy(cp_oncoming_reaction *reaction);
 
 /* A car is off its lane: whoever is on a collision course with it notices. neighbourhood covers at
- * least two speeds times notice_ttc_s. seed_key: of the driver error, drivers are drawn by id. */
+ * least two speeds times notice_ttc_s. view: the road, NULL where nobody
+ * knows it. seed_key: of the driver error, drivers are drawn by id. */
 CP_MUST_CHECK cp_status cp_oncoming_reaction_notice(cp_oncoming_reaction *reaction,
                                                     const cp_oncoming_reaction_settings *settings,
                                                     const cp_traffic *traffic,
                                                     const cp_neighbourhood *neighbourhood,
-                                                    uint32_t drifting, cp_rng_key seed_key,
-                                                    cp_error *error);
+                                                    cp_road_view *view, uint32_t drifting,
+                                                    cp_rng_key seed_key, cp_error *error);
 
 /* Ask for the brakes of those who react, for the coming step. */
 CP_MUST_CHECK cp_status cp_oncoming_reaction_step(cp_oncoming_reaction *reaction,

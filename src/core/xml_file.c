@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "exchange/xml_file.h"
+#include "core/xml_file.h"
+
+#include "core/file.h"
 
 #include <errno.h>
 #include <expat.h>
@@ -7,17 +9,27 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+#include <zlib.h>
 
 typedef struct reader {
     XML_Parser parser;
     const char *path;
     const char *root;
     size_t depth;
-    cp_xml_visit visit;
+    const cp_xml_visitor *visitor;
     void *context;
     cp_status status; /* of what was visited last */
     cp_error *error;
 } reader;
+
+// What a visit came to; anything but CP_OK is the last.
+static void visited(reader *self, cp_status status)
+{
+    self->status = status;
+    if (status != CP_OK)
+        XML_StopParser(self->parser, XML_FALSE);
+}
 
 static void XMLCALL begin_element(void *user, const XML_Char *name, const XML_Char **attribute)
 {
@@ -29,22 +41,48 @@ static void XMLCALL begin_element(void *user, const XML_Char *name, const XML_Ch
     if (self->status != CP_OK)
         return;
     if (self->depth++ == 0 && self->root != NULL && strcmp(name, self->root) != 0)
-        self->status = cp_fail(self->error, CP_BAD_INPUT, "%s:%zu: must be <%s>, found <%s>",
-                               self->path, element.line, self->root, name);
-    else
-        self->status = self->visit(self->context, &element, self->error);
-    if (self->status != CP_OK)
-        XML_StopParser(self->parser, XML_FALSE);
+        visited(self, cp_fail(self->error, CP_BAD_INPUT, "%s:%zu: must be <%s>, found <%s>",
+                              self->path, element.line, self->root, name));
+    else if (self->visitor->begin != NULL)
+        visited(self, self->visitor->begin(self->context, &element, self->error));
 }
 
 static void XMLCALL end_element(void *user, const XML_Char *name)
 {
     reader *self = user;
-    (void)name;
     self->depth--;
+    if (self->status == CP_OK && self->visitor->end != NULL)
+        visited(self, self->visitor->end(self->context, name, self->error));
 }
 
-static cp_status parse(reader *self, FILE *file, cp_error *error)
+static void XMLCALL take_text(void *user, const XML_Char *text, int size)
+{
+    reader *self = user;
+    if (self->status == CP_OK && self->visitor->text != NULL)
+        visited(self, self->visitor->text(self->context, text, (size_t)size, self->error));
+}
+
+static void XMLCALL declare_entity(void *user, const XML_Char *name, int is_parameter,
+                                   const XML_Char *value, int size, const XML_Char *base,
+                                   const XML_Char *system, const XML_Char *public,
+                                   const XML_Char *notation)
+{
+    reader *self = user;
+    (void)name, (void)is_parameter, (void)value, (void)size, (void)base, (void)public;
+    (void)notation;
+    if (system != NULL && self->status == CP_OK && self->visitor->outside != NULL)
+        visited(self, self->visitor->outside(self->context, system, self->error));
+}
+
+static void XMLCALL begin_doctype(void *user, const XML_Char *name, const XML_Char *system,
+                                  const XML_Char *public, int has_internal_subset)
+{
+    (void)has_internal_subset;
+    declare_entity(user, name, 0, NULL, 0, NULL, system, public, NULL);
+}
+
+// gzread reads what is not compressed as it is.
+static cp_status parse(reader *self, gzFile file, cp_error *error)
 {
     enum { CHUNK = 1 << 16 };
     int is_last = 0;
@@ -52,14 +90,19 @@ static cp_status parse(reader *self, FILE *file, cp_error *error)
         void *buffer = XML_GetBuffer(self->parser, CHUNK);
         if (buffer == NULL)
             return cp_fail_memory(error, self->path);
-        size_t size = fread(buffer, 1, CHUNK, file);
-        if (ferror(file))
+        int size = gzread(file, buffer, CHUNK);
+        int broken = 0;
+        const char *reason = gzerror(file, &broken);
+        // A compressed file cut off in the middle ends without its checksum (Z_BUF_ERROR).
+        if (size < 0 || broken < 0)
             return cp_fail(error, CP_BAD_INPUT, "%s: cannot be read: %s", self->path,
-                           strerror(errno));
+                           broken == Z_ERRNO ? strerror(errno) : reason);
         is_last = size < CHUNK;
-        enum XML_Status parsed = XML_ParseBuffer(self->parser, (int)size, is_last);
+        enum XML_Status parsed = XML_ParseBuffer(self->parser, size, is_last);
         if (self->status != CP_OK)
             return self->status;
+        if (parsed == XML_STATUS_ERROR && XML_GetErrorCode(self->parser) == XML_ERROR_NO_MEMORY)
+            return cp_fail_memory(error, self->path);
         if (parsed == XML_STATUS_ERROR)
             return cp_fail(error, CP_BAD_INPUT, "%s:%lu: is not XML: %s", self->path,
                            (unsigned long)XML_GetCurrentLineNumber(self->parser),
@@ -68,29 +111,48 @@ static cp_status parse(reader *self, FILE *file, cp_error *error)
     return CP_OK;
 }
 
-cp_status cp_xml_read(const char *path, const char *root, cp_xml_visit visit, void *context,
-                      cp_error *error)
+cp_status cp_xml_read_all(const char *path, const char *root, const cp_xml_visitor *visitor,
+                          void *context, cp_error *error)
 {
-    FILE *file = fopen(path, "rb");
-    if (file == NULL)
-        return cp_fail(error, CP_BAD_INPUT, "%s: %s", path, strerror(errno));
+    // gzip's reader takes a descriptor over; what has no end is refused before.
+    FILE *checked = NULL;
+    cp_status status = cp_file_open(path, &checked, error);
+    if (status != CP_OK)
+        return status;
+    int descriptor = dup(fileno(checked));
+    fclose(checked);
+    gzFile file = descriptor >= 0 ? gzdopen(descriptor, "rb") : NULL;
+    if (file == NULL) {
+        if (descriptor >= 0)
+            close(descriptor);
+        return cp_fail_memory(error, path);
+    }
     reader self = {.parser = XML_ParserCreate(NULL),
                    .path = path,
                    .root = root,
-                   .visit = visit,
+                   .visitor = visitor,
                    .context = context,
                    .error = error};
-    cp_status status = CP_OK;
     if (self.parser == NULL) {
         status = cp_fail_memory(error, path);
     } else {
         XML_SetUserData(self.parser, &self);
         XML_SetElementHandler(self.parser, begin_element, end_element);
+        XML_SetCharacterDataHandler(self.parser, take_text);
+        XML_SetEntityDeclHandler(self.parser, declare_entity);
+        XML_SetStartDoctypeDeclHandler(self.parser, begin_doctype);
         status = parse(&self, file, error);
         XML_ParserFree(self.parser);
     }
-    fclose(file);
+    gzclose(file);
     return status;
+}
+
+cp_status cp_xml_read(const char *path, const char *root, cp_xml_visit visit, void *context,
+                      cp_error *error)
+{
+    const cp_xml_visitor visitor = {.begin = visit};
+    return cp_xml_read_all(path, root, &visitor, context, error);
 }
 
 const char *cp_xml_attribute(const cp_xml_element *element, const char *name)

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CORE_YAML_LINES_H
+#define CORE_YAML_LINES_H
+
+#include "core/yaml_file.h"
+
+/* The lines of a YAML file: key path, text and line of every value, in the order of the file.
+ *
+ * An alias (*name) stands for a copy of what its anchor (&name) marks: its values are listed under
+ * the alias's own key path, each with the line where it is written, so that whoever reads values by
+ * key path meets them like any other. */
+
+/* Fill file->lines from content; file->path names it in messages. Errors: CP_BAD_INPUT with file
+ * and line for an alias without an anchor before it, one inside what it stands for, one in place of
+ * a key, a merge key (<<), a second document, more than 64 levels, and more than 100,000 values
+ * (aliases of aliases multiply). A syntax error is none: libcyaml, which reads the same, words it;
+ * lines end there. CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_yaml_lines_read(cp_yaml_file *file, const char *content, size_t size,
+                                           cp_error *error);
+
+#endif

@@ -56,10 +56,11 @@ static void energy_is_accounted_for(void **state)
         cp_crash_result result = simulate(&crash, &STANDARD);
         const cp_crash_energy *e = &result.energy;
         double sum_j = e->kinetic_j + e->elastic_j + e->plastic_j + e->friction_j +
-                       e->contact_damping_j + e->joint_damping_j;
+                       e->contact_damping_j + e->rate_j + e->mount_damping_j;
         assert_near(sum_j, e->start_j, 0.01 * e->start_j);
         assert_true(e->highest_mechanical_j <= 1.01 * e->start_j);
-        assert_true(e->plastic_j >= 0.0 && e->friction_j >= 0.0 && e->joint_damping_j >= 0.0);
+        assert_true(e->plastic_j >= 0.0 && e->friction_j >= 0.0 && e->rate_j >= 0.0 &&
+                    e->mount_damping_j >= 0.0);
         cp_crash_result_destroy(&result);
     }
 }

@@ -380,10 +380,16 @@ static cp_status read_objective(const cp_yaml_file *file, const yaml_fit *yaml, 
         return cp_yaml_fail(file, error, "pulses", "%s",
                             by_pulse ? "is missing: objective pulse needs the pulses to fit"
                                      : "goes with objective pulse");
-    if (by_pulse == (yaml->reference != NULL))
+    bool by_targets = !by_pulse && yaml->reference == NULL && yaml->targets_count > 0;
+    if (by_pulse == (yaml->reference != NULL) && !by_targets)
         return cp_yaml_fail(file, error, "reference", "%s",
                             by_pulse ? "goes with objective olc"
-                                     : "is missing: objective olc needs the OLC values to fit");
+                                     : "is missing: objective olc needs the OLC values to fit, or "
+                                       "targets alone");
+    if (by_targets && yaml->calibrated == NULL)
+        return cp_yaml_fail(file, error, "calibrated",
+                            "is missing: targets alone say of no range that the vehicle is "
+                            "calibrated in it");
     fit->objective = by_pulse ? CP_FIT_PULSE : CP_FIT_OLC;
     if (by_pulse && yaml->prior_g != NULL)
         return cp_yaml_fail(file, error, "prior_g", "goes with objective olc");
@@ -420,6 +426,8 @@ static cp_status read_range(const cp_yaml_file *file, const yaml_range *yaml, cp
 static cp_status load_reference(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
                                 cp_error *error)
 {
+    if (yaml->reference == NULL)
+        return CP_OK;
     char *path = cp_file_beside(file->path, yaml->reference);
     fit->reference_path = strdup(yaml->reference);
     cp_status status = path != NULL && fit->reference_path != NULL

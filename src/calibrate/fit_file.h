@@ -37,7 +37,8 @@ typedef struct cp_fit {
     cp_vehicle_model base; /* start values, and all that is not fitted */
     cp_fit_objective objective;
     cp_reference reference; /* owned; by objective pulse: conditions and OLC of the pulses */
-    char *reference_path;   /* owned, as written in the file; NULL by objective pulse */
+    char *reference_path;   /* owned, as written in the file; NULL by objective pulse, and where the
+                               targets are all there is to fit */
     size_t pulse_count;
     cp_reference_pulse *pulses; /* owned; none by objective olc */
     cp_fit_range range;

@@ -257,6 +257,14 @@ static void write_ensemble_cost(FILE *file, const cp_fit *fit, const cp_calibrat
 
 static void write_objective(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
 {
+    if (fit->objective == CP_FIT_OLC && fit->reference.count == 0) {
+        fprintf(
+            file,
+            "Objective: the corridors of other crashes alone, by their weights the mean excess in "
+            "widths: %.4f. ",
+            calibration->objective);
+        return;
+    }
     if (fit->objective == CP_FIT_OLC) {
         fprintf(file, "Objective: mean absolute OLC error against `%s`%s: %.3f g. ",
                 fit->reference_path,
@@ -289,8 +297,10 @@ static void write_report(FILE *file, const cp_fit *fit, const cp_calibration *ca
             fit->prior_g);
     if (fit->objective == CP_FIT_PULSE)
         write_pulses(file, fit, calibration);
-    write_summary(file, fit->objective == CP_FIT_PULSE ? "OLC" : "Fitted to all configurations",
-                  &calibration->validation);
+    bool has_cases = fit->reference.count > 0;
+    if (has_cases)
+        write_summary(file, fit->objective == CP_FIT_PULSE ? "OLC" : "Fitted to all configurations",
+                      &calibration->validation);
     write_marks(file, fit, calibration);
     write_targets(file, fit, calibration);
     write_energy(file, calibration);
@@ -300,9 +310,11 @@ static void write_report(FILE *file, const cp_fit *fit, const cp_calibration *ca
         cp_cross_title(&calibration->cross[c], title);
         write_summary(file, title, &calibration->cross[c].validation);
     }
-    write_cumulative(file, fit, calibration);
+    if (has_cases)
+        write_cumulative(file, fit, calibration);
     write_parameters(file, fit, calibration);
-    write_cases(file, fit, calibration);
+    if (has_cases)
+        write_cases(file, fit, calibration);
 }
 
 // Write one text file through writer.

@@ -45,7 +45,7 @@ typedef struct search {
 cp_status cp_fit_work_create(const cp_fit *fit, cp_fit_work *work, cp_error *error)
 {
     *work = (cp_fit_work){0};
-    work->olc_g = calloc(fit->reference.count, sizeof *work->olc_g);
+    work->olc_g = calloc(fit->reference.count + 1, sizeof *work->olc_g);
     if (fit->objective == CP_FIT_PULSE) {
         work->pulse_error = calloc(fit->pulse_count, sizeof *work->pulse_error);
         work->pulse_misfit =

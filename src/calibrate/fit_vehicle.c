@@ -74,6 +74,11 @@ static void write_misfit(FILE *file, const cp_fit *fit, const cp_calibration *ca
     }
     if (fit->pulse_count > MISFITS_MAX)
         fprintf(file, "# every pulse: see the report\n");
+    if (fit->reference.count == 0) {
+        fprintf(file, "# targets alone: mean excess over their corridors %.4f widths\n",
+                calibration->objective);
+        return;
+    }
     fprintf(file, "# mean absolute OLC error %.3f g, largest %.2f g, over %zu configurations\n",
             calibration->validation.mean_abs_error_g, calibration->validation.max_abs_error_g,
             fit->reference.count);
@@ -107,7 +112,9 @@ void cp_fit_write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *c
     const cp_vehicle_model *model = &calibration->model;
     fprintf(file,
             "# Made by crashpulse calibrate; the report of the fit stands beside this file.\n");
-    fprintf(file, "# fit file sha256 %s\n# reference sha256 %s\n", fit->hash, fit->reference.hash);
+    fprintf(file, "# fit file sha256 %s\n", fit->hash);
+    if (fit->reference.count > 0)
+        fprintf(file, "# reference sha256 %s\n", fit->reference.hash);
     fprintf(file, "# ");
     cp_fit_write_way(file, fit);
     write_misfit(file, fit, calibration);

@@ -3,6 +3,8 @@
 #define CALIBRATE_CALIBRATION_H
 
 #include "calibrate/cross_validation.h"
+#include "calibrate/ensemble.h"
+#include "crash/crash_simulation.h"
 
 /* Fitting a vehicle model to a reference: the search of fit_search.h over all cases, then the
  * cross-validations the fit file asks for. The objective is the fit file's: the mean absolute OLC
@@ -15,6 +17,12 @@ typedef struct cp_calibration {
     cp_fit_work work;       /* owned: what it does in every case */
     cp_validation validation;
     double mark[CP_MARK_COUNT]; /* of its pulse, where the fit bounds them */
+    double target[CP_TARGETS_MAX * CP_TARGET_BOUNDS_MAX]; /* of its targets (target.h) */
+    cp_ensemble ensemble;                                 /* how the model's was found */
+    size_t energy_count;                                  /* of the wall tests below */
+    double energy_speed_km_h[3];
+    cp_crash_whole
+        energy[3]; /* what its parts absorb at a wall wider than the car, at those speeds */
     size_t cross_count;
     cp_cross_validation cross[CP_CROSS_KINDS]; /* owned */
 } cp_calibration;

@@ -55,11 +55,20 @@ static void fit_lengths(cp_vehicle_model *m)
     double bay_m = m->crash_box_length_m + m->longitudinal_length_m - m->engine_gap_firewall_m;
     m->engine_gap_front_m = fmin(m->engine_gap_front_m, bay_m - smallest_engine_m);
     m->cross_member_half_width_m = fmin(m->cross_member_half_width_m, 0.5 * m->width_m);
+    // A crash box gives way before the longitudinal behind it, and the bumper before the box.
+    double rail_kn = m->longitudinal_collapse_begin_kn;
+    m->crash_box_collapse_begin_kn = fmin(m->crash_box_collapse_begin_kn, rail_kn);
+    m->crash_box_collapse_end_kn = fmin(m->crash_box_collapse_end_kn, rail_kn);
+    m->bumper_kn = fmin(m->bumper_kn, m->crash_box_collapse_begin_kn);
+
     // Steeper unloading than the time step stands is cut to what it does.
+    m->unload_end_factor_1 = fmax(m->unload_end_factor_1, m->unload_factor_1);
     double largest_s = cp_vehicle_model_largest_step(m, NULL);
-    if (largest_s < 0.0005)
-        m->unload_factor_1 *= 0.999 * (largest_s / 0.0005) * (largest_s / 0.0005);
-    m->unload_factor_1 = fmax(1.0, m->unload_factor_1);
+    if (largest_s < 0.0005) {
+        double share = 0.999 * (largest_s / 0.0005) * (largest_s / 0.0005);
+        m->unload_end_factor_1 = fmax(1.0, share * m->unload_end_factor_1);
+        m->unload_factor_1 = fmin(m->unload_factor_1, m->unload_end_factor_1);
+    }
     cp_barrier *barrier = &m->barrier;
     barrier->corner_radius_m =
         fmin(barrier->corner_radius_m, 0.5 * fmin(barrier->width_m, barrier->depth_m));

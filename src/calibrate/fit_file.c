@@ -2,6 +2,7 @@
 #include "calibrate/fit_file.h"
 
 #include "calibrate/fit_pulses.h"
+#include "calibrate/fit_targets.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/output_files.h"
@@ -69,6 +70,10 @@ typedef struct yaml_fit {
     char **leave_out;
     unsigned leave_out_count;
     yaml_plausible *plausible;
+    cp_yaml_target *targets;
+    unsigned targets_count;
+    char *ensemble;
+    char *ensemble_within_1;
     char *threads;
     yaml_unknown *unknowns;
     unsigned unknowns_count;
@@ -139,6 +144,10 @@ static const cyaml_schema_field_t FIT_FIELDS[] = {
                          &WORD_VALUE, 1, 3),
     CYAML_FIELD_MAPPING_PTR("plausible", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit,
                             plausible, PLAUSIBLE_FIELDS),
+    CYAML_FIELD_SEQUENCE("targets", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit, targets,
+                         &CP_YAML_TARGET_VALUE, 1, CP_TARGETS_MAX),
+    OPTIONAL_TEXT(ensemble, yaml_fit),
+    OPTIONAL_TEXT(ensemble_within_1, yaml_fit),
     OPTIONAL_TEXT(threads, yaml_fit),
     CYAML_FIELD_SEQUENCE("unknowns", CYAML_FLAG_POINTER, yaml_fit, unknowns, &UNKNOWN_VALUE, 1,
                          CP_UNKNOWNS_MAX),
@@ -166,6 +175,7 @@ static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp
     fit->global_time_step_s = 0.0005;
     fit->local_time_step_s = 0.0005;
     fit->soft_g = 0.3;
+    fit->ensemble_within_1 = 0.15;
     cp_status status = read_count(file, "seed", yaml->seed, 0, UINT32_MAX, 0, &seed, error);
     if (status == CP_OK)
         status =
@@ -197,6 +207,12 @@ static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp
     if (status == CP_OK)
         status = cp_yaml_number(file, "local_time_step_s", yaml->local_time_step_s, 1e-5, 0.002,
                                 &fit->local_time_step_s, error);
+    if (status == CP_OK)
+        status = read_count(file, "ensemble", yaml->ensemble, 0, CP_ENSEMBLE_MAX, 0, &fit->ensemble,
+                            error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "ensemble_within_1", yaml->ensemble_within_1, 0.001, 1,
+                                &fit->ensemble_within_1, error);
     if (status == CP_OK)
         status = cp_yaml_number(file, "soft_g", yaml->soft_g, 0.01, 100, &fit->soft_g, error);
     if (status == CP_OK)
@@ -374,10 +390,16 @@ static cp_status read_objective(const cp_yaml_file *file, const yaml_fit *yaml, 
         return cp_yaml_fail(file, error, "pulses", "%s",
                             by_pulse ? "is missing: objective pulse needs the pulses to fit"
                                      : "goes with objective pulse");
-    if (by_pulse == (yaml->reference != NULL))
+    bool by_targets = !by_pulse && yaml->reference == NULL && yaml->targets_count > 0;
+    if (by_pulse == (yaml->reference != NULL) && !by_targets)
         return cp_yaml_fail(file, error, "reference", "%s",
                             by_pulse ? "goes with objective olc"
-                                     : "is missing: objective olc needs the OLC values to fit");
+                                     : "is missing: objective olc needs the OLC values to fit, or "
+                                       "targets alone");
+    if (by_targets && yaml->calibrated == NULL)
+        return cp_yaml_fail(file, error, "calibrated",
+                            "is missing: targets alone say of no range that the vehicle is "
+                            "calibrated in it");
     fit->objective = by_pulse ? CP_FIT_PULSE : CP_FIT_OLC;
     if (by_pulse && yaml->prior_g != NULL)
         return cp_yaml_fail(file, error, "prior_g", "goes with objective olc");
@@ -415,6 +437,8 @@ static cp_status read_range(const cp_yaml_file *file, const yaml_range *yaml, cp
 static cp_status load_reference(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
                                 cp_error *error)
 {
+    if (yaml->reference == NULL)
+        return CP_OK;
     char *path = cp_file_beside(file->path, yaml->reference);
     fit->reference_path = strdup(yaml->reference);
     cp_status status = path != NULL && fit->reference_path != NULL
@@ -543,6 +567,8 @@ cp_status cp_fit_load(const char *path, const char *output_path, cp_fit *fit, cp
         status = read_leave_out(&file, yaml, fit, error);
     if (status == CP_OK)
         status = read_plausible(&file, yaml->plausible, fit, error);
+    if (status == CP_OK)
+        status = cp_fit_targets_read(&file, yaml->targets, yaml->targets_count, fit, error);
     for (size_t row = 0; status == CP_OK && row < yaml->unknowns_count; row++)
         status = read_unknown(&file, &yaml->unknowns[row], row, fit, error);
     fit->unknown_count = yaml->unknowns_count;

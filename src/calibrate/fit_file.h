@@ -5,6 +5,7 @@
 #include "calibrate/candidate.h"
 #include "calibrate/plausibility.h"
 #include "calibrate/reference_pulse.h"
+#include "calibrate/target.h"
 
 #include <stdint.h>
 
@@ -36,7 +37,8 @@ typedef struct cp_fit {
     cp_vehicle_model base; /* start values, and all that is not fitted */
     cp_fit_objective objective;
     cp_reference reference; /* owned; by objective pulse: conditions and OLC of the pulses */
-    char *reference_path;   /* owned, as written in the file; NULL by objective pulse */
+    char *reference_path;   /* owned, as written in the file; NULL by objective pulse, and where the
+                               targets are all there is to fit */
     size_t pulse_count;
     cp_reference_pulse *pulses; /* owned; none by objective olc */
     cp_fit_range range;
@@ -67,7 +69,12 @@ typedef struct cp_fit {
     bool leave_out[4];        /* also leave out one level at a time of: -, speed, offset, angle
                                  (index: cp_cross_kind) */
     cp_plausibility plausible; /* bounds of the pulse's marks */
-    int threads;               /* default 1 */
+    size_t target_count;
+    cp_target target[CP_TARGETS_MAX]; /* corridors of further crashes */
+    size_t ensemble; /* parameter sets kept that fit about as well (ensemble.h), default 0 */
+    double ensemble_within_1; /* about as well: the robust cost of the best plus this share of it,
+                                 default 0.15 */
+    int threads;              /* default 1 */
     size_t unknown_count;
     cp_unknown unknown[CP_UNKNOWNS_MAX];
 } cp_fit;

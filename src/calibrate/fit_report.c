@@ -1,93 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/calibration.h"
+#include "calibrate/fit_vehicle.h"
 #include "core/file.h"
 #include "core/safe_text.h"
 #include "core/units.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-// So many pulses are listed in the head of the vehicle file.
-enum { MISFITS_MAX = 4 };
-
-// ---- the fitted vehicle ----------------------------------------------------------------------
-
-static const cp_unknown *unknown_of(const cp_fit *fit, const char *name)
-{
-    for (size_t k = 0; k < fit->unknown_count; k++)
-        if (strcmp(fit->unknown[k].name, name) == 0)
-            return &fit->unknown[k];
-    return NULL;
-}
-
-static double highest_speed(const cp_fit *fit, double sign)
-{
-    double best = -INFINITY;
-    for (size_t k = 0; k < fit->reference.count; k++)
-        best = fmax(best, sign * fit->reference.cases[k].speed_km_h);
-    return sign * best;
-}
-
-static void write_range(FILE *file, const cp_fit *fit)
-{
-    cp_fit_range range = fit->range;
-    if (range.given) {
-        fprintf(file, "# calibrated range: %s\n", range.reason);
-    } else {
-        range.speed_min_km_h = highest_speed(fit, -1.0);
-        range.speed_max_km_h = highest_speed(fit, 1.0);
-        for (size_t k = 0; k < fit->reference.count; k++) {
-            range.offset_max_mm =
-                fmax(range.offset_max_mm, fabs(fit->reference.cases[k].offset_mm));
-            range.angle_max_deg =
-                fmax(range.angle_max_deg, fabs(fit->reference.cases[k].angle_deg));
-        }
-    }
-    fprintf(file, "calibrated:\n  speed_min_km_h: %g\n  speed_max_km_h: %g\n", range.speed_min_km_h,
-            range.speed_max_km_h);
-    fprintf(file, "  offset_max_mm: %g\n  angle_max_deg: %g\n", range.offset_max_mm,
-            range.angle_max_deg);
-}
-
-static void write_barrier(FILE *file, const cp_barrier *barrier)
-{
-    fprintf(file, "barrier:\n  width_m: %.9g\n  depth_m: %.9g\n  corner_radius_m: %.9g\n",
-            barrier->width_m, barrier->depth_m, barrier->corner_radius_m);
-    fprintf(file, "  pivot_m: %.9g\n  source: geometry of the reference study, see the fit\n",
-            barrier->pivot_m);
-}
-
-// What the vehicle was fitted to and how far from it it is, as comment lines.
-static void write_misfit(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
-{
-    if (fit->objective == CP_FIT_PULSE)
-        fprintf(file, "# weighted mean total error %.3f over %zu pulses\n", calibration->objective,
-                fit->pulse_count);
-    for (size_t k = 0; k < fit->pulse_count && k < MISFITS_MAX; k++) {
-        const cp_reference_pulse *pulse = &fit->pulses[k];
-        const cp_pulse_error *found = &calibration->work.pulse_error[k];
-        fputs("# ", file);
-        cp_text_print(file, pulse->source, "");
-        fprintf(file, ": mean abs. error of v_x %.3f m/s over 0 to %.0f ms;\n", found->vx_m_s,
-                1e3 * pulse->until_s);
-        fprintf(file,
-                "#   OLC %.2f g (reference %.2f), v = 0 at %.1f ms (%.1f), peak %.1f g (%.1f), "
-                "crush %.0f mm (%.0f)\n",
-                found->model.olc_g, pulse->marks.olc_g, 1e3 * found->model.t_v0_s,
-                1e3 * pulse->marks.t_v0_s, found->model.peak_g, pulse->marks.peak_g,
-                1e3 * found->model.crush_m, 1e3 * pulse->marks.crush_m);
-    }
-    if (fit->pulse_count > MISFITS_MAX)
-        fprintf(file, "# every pulse: see the report\n");
-    fprintf(file, "# mean absolute OLC error %.3f g, largest %.2f g, over %zu configurations\n",
-            calibration->validation.mean_abs_error_g, calibration->validation.max_abs_error_g,
-            fit->reference.count);
-}
-
-// How it was searched for.
-static void write_way(FILE *file, const cp_fit *fit)
+void cp_fit_write_way(FILE *file, const cp_fit *fit)
 {
     if (cp_fit_draws_starts(fit)) {
         fprintf(file, "%zu starts, the base and vehicles drawn around it (seed %u), ", fit->starts,
@@ -108,47 +32,6 @@ static void write_way(FILE *file, const cp_fit *fit)
     }
     fprintf(file, "; from the best Nelder-Mead (%zu evaluations).\n", fit->local_evaluations);
 }
-
-static void write_source(FILE *file, const char *name)
-{
-    fprintf(file, "source: ");
-    cp_text_write_yaml(file, name);
-    fprintf(file, "}\n");
-}
-
-static void write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
-{
-    const cp_vehicle_model *model = &calibration->model;
-    fprintf(file,
-            "# Made by crashpulse calibrate; the report of the fit stands beside this file.\n");
-    fprintf(file, "# fit file sha256 %s\n# reference sha256 %s\n", fit->hash, fit->reference.hash);
-    fprintf(file, "# ");
-    write_way(file, fit);
-    write_misfit(file, fit, calibration);
-    fprintf(file, "vehicle: ");
-    cp_text_write_yaml(file, fit->name);
-    fputc('\n', file);
-    if (fit->description[0] != '\0') {
-        fprintf(file, "description: ");
-        cp_text_write_yaml(file, fit->description);
-        fputc('\n', file);
-    }
-    write_range(file, fit);
-    write_barrier(file, &model->barrier);
-    fprintf(file, "parameters:\n");
-    for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++) {
-        const cp_vehicle_parameter *parameter = &CP_VEHICLE_PARAMETER[k];
-        const cp_unknown *unknown = unknown_of(fit, parameter->name);
-        fprintf(file, "  - {name: %s, value: %.9g, unit: %s, ", parameter->name,
-                cp_vehicle_model_get(model, k), parameter->unit);
-        if (unknown != NULL)
-            fprintf(file, "source: fitted within %g to %g}\n", unknown->min, unknown->max);
-        else
-            write_source(file, fit->base.name);
-    }
-}
-
-// ---- the report ------------------------------------------------------------------------------
 
 static void write_summary(FILE *file, const char *title, const cp_validation *validation)
 {
@@ -284,14 +167,118 @@ static void write_marks(FILE *file, const cp_fit *fit, const cp_calibration *cal
     }
 }
 
+// Every corridor the fit was asked to keep.
+static void write_targets(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    if (fit->target_count == 0)
+        return;
+    fprintf(file, "\n## Corridors of other crashes\n\n");
+    for (size_t t = 0; t < fit->target_count; t++) {
+        const cp_target *target = &fit->target[t];
+        fputs("* ", file);
+        cp_text_print(file, target->name, "");
+        fprintf(file, " (weight %g), ", target->weight);
+        if (target->against_itself)
+            fprintf(file, "against a car like itself, %g km/h each", target->speed_km_h);
+        else if (target->has_barrier)
+            fprintf(file, "against a wall %g m wide with edges of %g m radius, %g km/h",
+                    target->barrier.width_m, target->barrier.corner_radius_m, target->speed_km_h);
+        else
+            fprintf(file, "against the barrier of the reference, %g km/h", target->speed_km_h);
+        fprintf(file, ", offset %g mm, angle %g deg: ", target->offset_mm, target->angle_deg);
+        cp_text_print(file, target->source, "");
+        fputc('\n', file);
+    }
+    fprintf(file, "\n| crash | quantity | at ms | model | smallest | aim | largest | |\n"
+                  "|---|---|---:|---:|---:|---:|---:|---|\n");
+    for (size_t t = 0; t < fit->target_count; t++) {
+        for (size_t b = 0; b < fit->target[t].bound_count; b++) {
+            const cp_target_bounds *bounds = &fit->target[t].bound[b];
+            const cp_target_kind *kind = &CP_TARGET_KIND[bounds->quantity];
+            double value = calibration->target[t * CP_TARGET_BOUNDS_MAX + b];
+            fputs("| ", file);
+            cp_text_print(file, fit->target[t].name, "");
+            fprintf(file, " | %s |", kind->key);
+            if (kind->at_instant)
+                fprintf(file, " %.0f |", 1e3 * bounds->at_s);
+            else
+                fprintf(file, " |");
+            fprintf(file, " %.4g | %.4g | %.4g | %.4g | %s |\n", value / kind->si_per_unit,
+                    bounds->min / kind->si_per_unit, bounds->aim / kind->si_per_unit,
+                    bounds->max / kind->si_per_unit,
+                    cp_target_excess(bounds, value) == 0.0 ? "" : "outside");
+        }
+    }
+}
+
+// Where the energy of full-width wall tests goes.
+static void write_energy(FILE *file, const cp_calibration *calibration)
+{
+    static const struct {
+        const char *name;
+        size_t offset;
+    } PART[] = {{"longitudinal members", offsetof(cp_car_absorbed, longitudinal_j)},
+                {"bumper and crash boxes", offsetof(cp_car_absorbed, crash_box_j)},
+                {"bending of members", offsetof(cp_car_absorbed, bending_j)},
+                {"engine, cradle, firewall", offsetof(cp_car_absorbed, engine_j)},
+                {"outboard corners", offsetof(cp_car_absorbed, corner_j)},
+                {"upper load path", offsetof(cp_car_absorbed, upper_j)},
+                {"strain rate, in all of them", offsetof(cp_car_absorbed, rate_j)}};
+    fprintf(file, "\n## Where the energy goes at a wall 0.5 m wider than the car\n\n| part |");
+    for (size_t k = 0; k < calibration->energy_count; k++)
+        fprintf(file, " %g km/h |", calibration->energy_speed_km_h[k]);
+    fprintf(file, "\n|---|");
+    for (size_t k = 0; k < calibration->energy_count; k++)
+        fprintf(file, "---:|");
+    fprintf(file, "\n| absorbed, kJ |");
+    for (size_t k = 0; k < calibration->energy_count; k++)
+        fprintf(file, " %.1f |", 1e-3 * calibration->energy[k].absorbed_j);
+    fprintf(file, "\n");
+    for (size_t row = 0; row < sizeof PART / sizeof *PART; row++) {
+        fprintf(file, "| %s |", PART[row].name);
+        for (size_t k = 0; k < calibration->energy_count; k++) {
+            double energy_j = 0.0;
+            memcpy(&energy_j, (const char *)&calibration->energy[k].part + PART[row].offset,
+                   sizeof energy_j);
+            fprintf(file, " %.1f %% |", 100.0 * energy_j / calibration->energy[k].absorbed_j);
+        }
+        fprintf(file, "\n");
+    }
+}
+
+static void write_ensemble_cost(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
+{
+    const cp_ensemble *ensemble = &calibration->ensemble;
+    if (fit->ensemble == 0)
+        return;
+    fprintf(file,
+            "\n## Ensemble\n\n%zu of %zu parameter sets tried were kept: every unknown of the "
+            "fitted vehicle moved by up to a quarter of its bounds, brought down again by least "
+            "squares (%zu evaluations), and the robust cost of all residuals at most %g above that "
+            "of the vehicle, %.4f g. Their costs:",
+            calibration->model.member_count, ensemble->tried, fit->slope_evaluations / 2,
+            fit->ensemble_within_1, ensemble->best_cost);
+    for (size_t m = 0; m < calibration->model.member_count; m++)
+        fprintf(file, "%s %.4f", m > 0 ? "," : "", ensemble->cost[m]);
+    fprintf(file, " g.\n");
+}
+
 static void write_objective(FILE *file, const cp_fit *fit, const cp_calibration *calibration)
 {
+    if (fit->objective == CP_FIT_OLC && fit->reference.count == 0) {
+        fprintf(
+            file,
+            "Objective: the corridors of other crashes alone, by their weights the mean excess in "
+            "widths: %.4f. ",
+            calibration->objective);
+        return;
+    }
     if (fit->objective == CP_FIT_OLC) {
         fprintf(file, "Objective: mean absolute OLC error against `%s`%s: %.3f g. ",
                 fit->reference_path,
-                fit->plausible.given
-                    ? ", and 1 g for every width a mark of the pulse is outside of "
-                      "its bounds"
+                fit->plausible.given || fit->target_count > 0
+                    ? ", and 1 g for every width a mark of the pulse, or by its weight the mean "
+                      "quantity of a corridor, is outside of its bounds"
                     : "",
                 calibration->objective);
         return;
@@ -306,7 +293,7 @@ static void write_report(FILE *file, const cp_fit *fit, const cp_calibration *ca
 {
     fprintf(file, "# Fit of %s\n\n", fit->name);
     write_objective(file, fit, calibration);
-    write_way(file, fit);
+    cp_fit_write_way(file, fit);
     if (fit->slope_evaluations > 0)
         fprintf(file, "\nLeast squares count an error above %g g by its absolute value.\n",
                 fit->soft_g);
@@ -318,17 +305,24 @@ static void write_report(FILE *file, const cp_fit *fit, const cp_calibration *ca
             fit->prior_g);
     if (fit->objective == CP_FIT_PULSE)
         write_pulses(file, fit, calibration);
-    write_summary(file, fit->objective == CP_FIT_PULSE ? "OLC" : "Fitted to all configurations",
-                  &calibration->validation);
+    bool has_cases = fit->reference.count > 0;
+    if (has_cases)
+        write_summary(file, fit->objective == CP_FIT_PULSE ? "OLC" : "Fitted to all configurations",
+                      &calibration->validation);
     write_marks(file, fit, calibration);
+    write_targets(file, fit, calibration);
+    write_energy(file, calibration);
+    write_ensemble_cost(file, fit, calibration);
     for (size_t c = 0; c < calibration->cross_count; c++) {
         char title[80];
         cp_cross_title(&calibration->cross[c], title);
         write_summary(file, title, &calibration->cross[c].validation);
     }
-    write_cumulative(file, fit, calibration);
+    if (has_cases)
+        write_cumulative(file, fit, calibration);
     write_parameters(file, fit, calibration);
-    write_cases(file, fit, calibration);
+    if (has_cases)
+        write_cases(file, fit, calibration);
 }
 
 // Write one text file through writer.
@@ -355,7 +349,7 @@ cp_status cp_calibration_write(const cp_fit *fit, const cp_calibration *calibrat
                                cp_error *error)
 {
     char path[4096];
-    cp_status status = write_text(fit->output_path, write_vehicle, fit, calibration, error);
+    cp_status status = write_text(fit->output_path, cp_fit_write_vehicle, fit, calibration, error);
     snprintf(path, sizeof path, "%s.fit.md", fit->output_path);
     if (status == CP_OK)
         status = write_text(path, write_report, fit, calibration, error);

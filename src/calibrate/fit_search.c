@@ -22,6 +22,9 @@ static const double PENALTY_TOTAL = 1000.0;
 // like one configuration off by 10 g.
 static const double EXCESS_G = 1.0;
 static const double EXCESS_RESIDUAL_G = 10.0;
+// Inside its corridor a target's quantity is drawn to its aim: from the aim to a bound half a width
+// away like half a gram of one configuration.
+static const double DISTANCE_RESIDUAL_G = 1.0;
 
 // One search: which cases count, at which time step, and how far it is.
 typedef struct search {
@@ -29,10 +32,11 @@ typedef struct search {
     const bool *use; /* NULL: all cases */
     double time_step_s;
     cp_fit_work *work;
-    double excess_1[CP_MARK_COUNT]; /* of the candidate judged last */
-    double known[CP_UNKNOWNS_MAX];  /* point of the base vehicle */
-    cp_descent_journal journal;     /* of drawn starts */
-    double *residual;               /* of the candidate judged last, likewise; else NULL */
+    double excess_1[CP_MARK_COUNT];                       /* of the candidate judged last */
+    double target[CP_TARGETS_MAX * CP_TARGET_BOUNDS_MAX]; /* likewise */
+    double known[CP_UNKNOWNS_MAX];                        /* point of the base vehicle */
+    cp_descent_journal journal;                           /* of drawn starts */
+    double *residual; /* of the candidate judged last, likewise; else NULL */
     cp_progress progress;
     cp_status failed;
     cp_error *error;
@@ -41,7 +45,7 @@ typedef struct search {
 cp_status cp_fit_work_create(const cp_fit *fit, cp_fit_work *work, cp_error *error)
 {
     *work = (cp_fit_work){0};
-    work->olc_g = calloc(fit->reference.count, sizeof *work->olc_g);
+    work->olc_g = calloc(fit->reference.count + 1, sizeof *work->olc_g);
     if (fit->objective == CP_FIT_PULSE) {
         work->pulse_error = calloc(fit->pulse_count, sizeof *work->pulse_error);
         work->pulse_misfit =
@@ -84,6 +88,24 @@ static void judge_marks(search *run, const cp_vehicle_model *model)
     cp_plausibility_excess(guard, mark, run->excess_1);
 }
 
+// What the corridors of the targets cost: the mean excess of every target.
+static cp_status judge_targets(search *run, const cp_vehicle_model *model, double *cost)
+{
+    const cp_fit *fit = run->fit;
+    *cost = 0.0;
+    cp_status status = cp_target_values(fit->target, fit->target_count, model, run->time_step_s,
+                                        fit->threads, run->target, run->error);
+    for (size_t t = 0; status == CP_OK && t < fit->target_count; t++) {
+        const cp_target *target = &fit->target[t];
+        const double *value = run->target + t * CP_TARGET_BOUNDS_MAX;
+        double excess = 0.0;
+        for (size_t b = 0; b < target->bound_count; b++)
+            excess += fabs(cp_target_excess(&target->bound[b], value[b]));
+        *cost += EXCESS_G * target->weight * excess / (double)target->bound_count;
+    }
+    return status;
+}
+
 // Simulate the cases in simulated (NULL: all), judge those the search uses; keeps what was found
 // in the work space.
 static cp_status judge_model(search *run, const cp_vehicle_model *model, const bool *simulated,
@@ -91,10 +113,13 @@ static cp_status judge_model(search *run, const cp_vehicle_model *model, const b
 {
     const cp_fit *fit = run->fit;
     const cp_reference *reference = &fit->reference;
+    double targets = 0.0;
+    cp_status status = judge_targets(run, model, &targets);
+    if (status != CP_OK)
+        return status;
     if (fit->objective == CP_FIT_OLC) {
-        cp_status status =
-            cp_objective_olc(model, reference->cases, reference->count, simulated, run->time_step_s,
-                             fit->threads, run->work->olc_g, run->error);
+        status = cp_objective_olc(model, reference->cases, reference->count, simulated,
+                                  run->time_step_s, fit->threads, run->work->olc_g, run->error);
         if (status != CP_OK)
             return status;
         *value = cp_objective_mean_error(reference->cases, run->work->olc_g, reference->count,
@@ -102,9 +127,10 @@ static cp_status judge_model(search *run, const cp_vehicle_model *model, const b
         judge_marks(run, model);
         for (int k = 0; k < CP_MARK_COUNT; k++)
             *value += EXCESS_G * fabs(run->excess_1[k]);
+        *value += targets;
         return CP_OK;
     }
-    cp_status status =
+    status =
         cp_objective_pulse(model, fit->pulses, fit->pulse_count, run->time_step_s, fit->threads,
                            run->work->pulse_error, run->work->pulse_misfit, run->error);
     if (status != CP_OK)
@@ -116,6 +142,7 @@ static cp_status judge_model(search *run, const cp_vehicle_model *model, const b
     }
     *value = cp_objective_pulse_mean(fit->pulses, run->work->pulse_error, fit->pulse_count,
                                      run->use, PENALTY_TOTAL);
+    *value += targets;
     return CP_OK;
 }
 
@@ -178,6 +205,24 @@ static size_t olc_residuals(const search *run, bool no_car, double *residual)
     return row;
 }
 
+// The targets' quantities: how far outside of their corridors, and inside of them from their aims.
+static size_t target_residuals(const search *run, bool no_car, double *residual)
+{
+    const cp_fit *fit = run->fit;
+    size_t row = 0;
+    for (size_t t = 0; t < fit->target_count; t++) {
+        const cp_target *target = &fit->target[t];
+        for (size_t b = 0; b < target->bound_count; b++) {
+            const cp_target_bounds *bounds = &target->bound[b];
+            double value = run->target[t * CP_TARGET_BOUNDS_MAX + b];
+            double misfit = EXCESS_RESIDUAL_G * cp_target_excess(bounds, value) +
+                            DISTANCE_RESIDUAL_G * cp_target_distance(bounds, value);
+            residual[row++] = no_car ? PENALTY_G : target->weight * misfit;
+        }
+    }
+    return row;
+}
+
 // All misfits with their sign, then how far the unknowns have come; the value beside them, or among
 // drawn starts what least squares make small.
 static double residuals_at(void *context, const double *point, size_t dimension, double *residual,
@@ -188,6 +233,7 @@ static double residuals_at(void *context, const double *point, size_t dimension,
     bool no_car = value >= penalty_of(run->fit);
     size_t row = run->fit->objective == CP_FIT_PULSE ? pulse_residuals(run, no_car, residual)
                                                      : olc_residuals(run, no_car, residual);
+    row += target_residuals(run, no_car, residual + row);
     for (size_t k = 0; row < count; k++)
         residual[row++] = run->fit->prior_g * (point[k] - run->known[k]);
     return run->residual != NULL ? cp_robust_mean(residual, count, run->fit->soft_g) : value;
@@ -242,6 +288,14 @@ static cp_status search_globally(search *run, const char *state_path, uint32_t s
     return status;
 }
 
+static size_t target_bounds(const cp_fit *fit)
+{
+    size_t count = 0;
+    for (size_t t = 0; t < fit->target_count; t++)
+        count += fit->target[t].bound_count;
+    return count;
+}
+
 static size_t residual_count(const search *run)
 {
     const cp_fit *fit = run->fit;
@@ -249,7 +303,7 @@ static size_t residual_count(const search *run)
     for (size_t k = 0; k < fit->reference.count; k++)
         used += run->use == NULL || run->use[k];
     return used * (fit->objective == CP_FIT_PULSE ? (size_t)CP_PULSE_MISFITS : 1) +
-           (fit->plausible.given ? (size_t)CP_MARK_COUNT : 0) +
+           (fit->plausible.given ? (size_t)CP_MARK_COUNT : 0) + target_bounds(fit) +
            (fit->prior_g > 0.0 ? fit->unknown_count : 0);
 }
 
@@ -425,6 +479,28 @@ cp_status cp_fit_search(const cp_fit *fit, const bool *use, const char *state_st
     round_as_written(fit, model);
     run.time_step_s = fit->local_time_step_s;
     return judge_model(&run, model, NULL, value);
+}
+
+cp_status cp_fit_descend(const cp_fit *fit, const char *label, size_t evaluations, double *point,
+                         double *cost, cp_error *error)
+{
+    cp_fit_work work;
+    cp_status status = cp_fit_work_create(fit, &work, error);
+    search run = {.fit = fit, .work = &work, .failed = CP_OK, .error = error};
+    cp_candidate_point(&fit->base, fit->unknown, fit->unknown_count, run.known);
+    if (status == CP_OK)
+        status = search_slopes(&run, label, evaluations, point);
+    run.residual = calloc(residual_count(&run), sizeof *run.residual);
+    if (status == CP_OK && run.residual == NULL)
+        status = cp_fail_memory(error, "calibration");
+    if (status == CP_OK) {
+        run.time_step_s = fit->local_time_step_s;
+        *cost = cost_at(&run, point, fit->unknown_count);
+        status = run.failed;
+    }
+    free(run.residual);
+    cp_fit_work_destroy(&work);
+    return status;
 }
 
 void cp_fit_search_forget(const cp_fit *fit, const char *state_stem)

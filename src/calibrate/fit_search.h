@@ -31,6 +31,12 @@ CP_MUST_CHECK cp_status cp_fit_search(const cp_fit *fit, const bool *use, const 
                                       uint32_t seed, cp_vehicle_model *model, double *value,
                                       cp_fit_work *work, cp_error *error);
 
+/* Down the slopes of all misfits from a point of 0..1 coordinates, over all cases: point is moved
+ * in place, *cost receives the robust cost that least squares make small (cp_robust_mean), also for
+ * evaluations 0. label: what the progress line calls it. Errors: CP_NO_MEMORY, CP_RUN_FAILED. */
+CP_MUST_CHECK cp_status cp_fit_descend(const cp_fit *fit, const char *label, size_t evaluations,
+                                       double *point, double *cost, cp_error *error);
+
 /* Remove the states a search has left at state_stem. */
 void cp_fit_search_forget(const cp_fit *fit, const char *state_stem);
 

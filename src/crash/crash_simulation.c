@@ -2,6 +2,7 @@
 #include "crash/crash_simulation.h"
 
 #include "core/memory.h"
+#include "core/units.h"
 #include "crash/barrier.h"
 #include "crash/encounter.h"
 #include "crash/film_camera.h"
@@ -95,6 +96,7 @@ typedef struct crash_run {
     cp_vec2 common_m_s; /* velocity of the plane */
     cp_encounter encounter;
     cp_pose start[2];
+    cp_vec2 start_m_s[2];       /* of whole cars, seen from the plane */
     cp_body_state last[2];      /* centre of gravity at the end of the last step */
     cp_vec2 first_relative_m_s; /* of a against b at first contact */
     double last_approach_m_s;
@@ -223,6 +225,7 @@ static cp_status set_up(crash_run *run, const cp_vehicle_model *models[2],
     for (int k = 0; k < run->car_count; k++) {
         run->last[k] = ground_state(run, k);
         run->start[k] = (cp_pose){run->last[k].cog_m, run->last[k].yaw_rad};
+        run->start_m_s[k] = cp_vec2_sub(run->last[k].velocity_m_s, run->common_m_s);
     }
     return CP_OK;
 }
@@ -366,18 +369,17 @@ static void update_energy(crash_run *run)
     double blocks_j = 0.0; // of the contact's work, what blocks have taken
     energy->kinetic_j = 0.0;
     energy->elastic_j = run->encounter.elastic_normal_j + run->encounter.elastic_friction_j;
-    energy->plastic_j = 0.0;
-    energy->joint_damping_j = 0.0;
+    energy->plastic_j = energy->rate_j = energy->mount_damping_j = 0.0;
     for (int c = 0; c < run->car_count; c++) {
+        cp_car_absorbed absorbed = cp_car_energy_absorbed(&run->car[c]);
         energy->kinetic_j += cp_car_kinetic_energy(&run->car[c]);
         energy->elastic_j += cp_car_elastic_energy(&run->car[c]);
-        energy->plastic_j += cp_car_plastic_energy(&run->car[c]);
-        energy->joint_damping_j += run->car[c].joint_damping_j;
-        double plastic_j, damping_j;
-        cp_car_block_energy(&run->car[c], &plastic_j, &damping_j);
-        energy->plastic_j += plastic_j;
-        energy->joint_damping_j += damping_j;
-        blocks_j += plastic_j + damping_j;
+        energy->plastic_j += absorbed.longitudinal_j + absorbed.crash_box_j + absorbed.bending_j +
+                             absorbed.engine_j + absorbed.corner_j + absorbed.upper_j -
+                             run->car[c].mount_damping_j;
+        energy->rate_j += absorbed.rate_j;
+        energy->mount_damping_j += run->car[c].mount_damping_j;
+        blocks_j += cp_car_block_energy(&run->car[c]);
     }
     energy->friction_j = run->encounter.friction_work_j - run->encounter.elastic_friction_j;
     energy->contact_damping_j =
@@ -496,8 +498,45 @@ static cp_status simulate_contact(crash_run *run, cp_error *error)
     return CP_OK;
 }
 
+static double sum_of_parts(const cp_car_absorbed *part)
+{
+    return part->longitudinal_j + part->crash_box_j + part->bending_j + part->engine_j +
+           part->corner_j + part->upper_j + part->rate_j;
+}
+
+// What has become of each car as a whole.
+static void evaluate_whole(crash_run *run)
+{
+    const cp_crash_energy *energy = &run->result->energy;
+    double contact_j = (energy->friction_j + energy->contact_damping_j) / run->car_count;
+    for (int c = 0; c < run->car_count; c++) {
+        cp_crash_whole *whole = &run->result->whole[c];
+        const cp_car *car = &run->car[c];
+        double mass_kg = car->model->mass_kg, angular = 0.0;
+        cp_vec2 velocity = cp_vec2_scale(cp_car_momentum(car, &angular), 1.0 / mass_kg);
+        cp_vec2 change = cp_vec2_sub(velocity, run->start_m_s[c]);
+        whole->delta_v_m_s = cp_vec2_rotate(change, -run->start[c].yaw_rad);
+        whole->part = cp_car_energy_absorbed(car);
+        whole->absorbed_j = fmax(0.0, sum_of_parts(&whole->part) + contact_j);
+        whole->ees_m_s = sqrt(2.0 * whole->absorbed_j / mass_kg);
+    }
+}
+
+// Delta-v is that of the whole car: the passenger cell's depends on how its front still swings.
+static void take_whole_delta_v(const cp_crash_whole *whole, cp_severity *severity)
+{
+    severity->delta_v_m_s = cp_vec2_length(whole->delta_v_m_s);
+    severity->delta_v_x_m_s = 0.0 - whole->delta_v_m_s.x;
+    severity->delta_v_y_m_s = 0.0 - whole->delta_v_m_s.y;
+    severity->pdof_rad =
+        severity->delta_v_m_s > 1e-9
+            ? cp_wrap_angle(atan2(whole->delta_v_m_s.y, whole->delta_v_m_s.x) + CP_PI)
+            : (double)NAN;
+}
+
 static cp_status evaluate(crash_run *run, cp_error *error)
 {
+    evaluate_whole(run);
     cp_crash_result *result = run->result;
     for (int c = 0; c < run->car_count; c++) {
         result->pulse[c].sample_count = run->sample + 1;
@@ -505,6 +544,7 @@ static cp_status evaluate(crash_run *run, cp_error *error)
                                                 run->car_count == 1, &result->severity[c], error);
         if (status != CP_OK)
             return status;
+        take_whole_delta_v(&result->whole[c], &result->severity[c]);
         result->crush_m[c] = run->car[c].crush_m;
     }
     return CP_OK;

@@ -8,6 +8,17 @@
 
 /* One crash on the multibody surrogate. */
 
+/* What the parts of a car have dissipated, J. */
+typedef struct cp_car_absorbed {
+    double longitudinal_j; /* crush of the longitudinal members */
+    double crash_box_j;    /* of the crash boxes with the bumper */
+    double bending_j;      /* feet of the longitudinals, halves of the cross member */
+    double engine_j;       /* cradle, firewall behind it, mounts with their dampers */
+    double corner_j;       /* outboard corners with the cell's edge behind them */
+    double upper_j;        /* upper load path likewise */
+    double rate_j;         /* what strain rate adds to all of them */
+} cp_car_absorbed;
+
 typedef struct cp_crash_options {
     double time_step_s;        /* default 0.0005 */
     double duration_s;         /* at least this long, default 0.2 */
@@ -29,7 +40,8 @@ typedef struct cp_crash_energy {
     double plastic_j;
     double friction_j;
     double contact_damping_j;
-    double joint_damping_j;
+    double rate_j;               /* what strain rate adds to the collapse forces */
+    double mount_damping_j;      /* dampers of the engine's ties */
     double highest_mechanical_j; /* largest kinetic + elastic over the run; kinetic as the mean of
                                   * before and after the step that the elastic forces make */
 } cp_crash_energy;
@@ -42,10 +54,22 @@ typedef struct cp_crash_momentum {
     double angular_kg_m2_s;
 } cp_crash_momentum;
 
+/* What the crash did to a car as a whole, all its parts together. */
+typedef struct cp_crash_whole {
+    cp_vec2 delta_v_m_s; /* change of its momentum over its mass, in the axes of its first pose; up
+                          * to the end of contact, which is the last that changes it */
+    double absorbed_j;   /* by its own parts, and of what friction and contact took all (barrier) or
+                          * half (another car) */
+    double ees_m_s;      /* energy equivalent speed: sqrt(2 absorbed / mass) */
+    cp_car_absorbed part; /* absorbed_j by part, without friction and contact */
+} cp_crash_whole;
+
 typedef struct cp_crash_result {
-    int vehicle_count; /* 1 (barrier) or 2 */
-    cp_pulse pulse[2]; /* raw, owned */
-    cp_severity severity[2];
+    int vehicle_count;       /* 1 (barrier) or 2 */
+    cp_pulse pulse[2];       /* raw, owned */
+    cp_severity severity[2]; /* of the pulses; delta-v and PDOF those of the whole cars, x and y in
+                              * the axes of their first poses */
+    cp_crash_whole whole[2];
     double crush_m[2];   /* largest shortening of the longer-pushed side, bumper to firewall */
     double separation_s; /* last contact force */
     double t_common_s;   /* two cars: first zero of relative velocity along its first direction */

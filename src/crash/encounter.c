@@ -58,6 +58,18 @@ static double in_series(double one, double other)
     return isinf(other) ? one : one * other / (one + other);
 }
 
+static bool is_cross_member(const cp_car *car, int outline)
+{
+    return car != NULL && (car->outline[outline].body == CP_BODY_CROSS_MEMBER_LEFT ||
+                           car->outline[outline].body == CP_BODY_CROSS_MEMBER_RIGHT);
+}
+
+static bool is_upper_path(const cp_car *car, int outline)
+{
+    return car != NULL && outline >= CP_OUTLINE_BLOCKS &&
+           cp_car_part_of_block(car, outline - CP_OUTLINE_BLOCKS) >= 2;
+}
+
 void cp_encounter_set_pairs(cp_encounter *encounter)
 {
     for (int i = 0; i < outline_count(encounter, 0); i++) {
@@ -68,6 +80,8 @@ void cp_encounter_set_pairs(cp_encounter *encounter)
             encounter->pair[i][j] = (cp_encounter_pair){
                 .body = {a->body[a->outline[i].body],
                          b != NULL ? b->body[b->outline[j].body] : NULL},
+                .never_meets = (is_cross_member(a, i) && is_upper_path(b, j)) ||
+                               (is_upper_path(a, i) && is_cross_member(b, j)),
                 .stiffness_n_m = in_series(a->outline[i].stiffness_n_m, stiffness_b_n_m),
                 .damping_n_s_m = in_series(a->outline[i].damping_n_s_m, damping_b_n_s_m)};
         }
@@ -111,16 +125,14 @@ static void push(const cp_encounter_pair *pair, cp_vec2 force_n, cp_vec2 at)
 }
 
 // A pair that touches at two points pushes with both. Near each other they are one patch, no
-// stiffer than a single corner: its stiffness grows with the distance of the points up to this.
-static const double CONTACT_PATCH_M = 0.12;
-
+// stiffer than a single corner: its stiffness grows with the distance of the points.
 static double point_weight(const cp_manifold *manifold)
 {
     if (manifold->count < 2)
         return 1.0;
     double apart_m =
         cp_vec2_length(cp_vec2_sub(manifold->point[1].position_m, manifold->point[0].position_m));
-    return 0.5 + 0.5 * fmin(1.0, apart_m / CONTACT_PATCH_M);
+    return 0.5 + 0.5 * fmin(1.0, apart_m / CP_CONTACT_PATCH_M);
 }
 
 static cp_crush_block *block_of(const cp_encounter *encounter, int party, int index)
@@ -130,34 +142,67 @@ static cp_crush_block *block_of(const cp_encounter *encounter, int party, int in
                                                          : NULL;
 }
 
-// A block gives way only to what presses on its face, not on its sides.
+// What presses on a block from nearer to its side than this does not count as its face's.
 static const double FACE_COSINE = 0.2;
 
-// All that presses on the faces of a party's blocks along their way, and how much that falls per
-// metre of slip; facing: whether any of it is a block itself.
+// All that presses on the blocks of a party, on their faces and to their left, and how much that
+// falls per metre of slip; facing: whether any of it is a block's face itself.
 typedef struct block_loads {
     double load_n[CP_OUTLINES_MAX];
     double slope_n_m[CP_OUTLINES_MAX];
+    double side_load_n[CP_OUTLINES_MAX];
+    double side_slope_n_m[CP_OUTLINES_MAX];
+    double gap_load_n[CP_OUTLINES_MAX]; /* < 0: where it has given more than there was, likewise */
+    double gap_slope_n_m[CP_OUTLINES_MAX];
     bool facing[CP_OUTLINES_MAX];
 } block_loads;
 
 static void add_load(const cp_encounter_pair *pair, int party, int own, block_loads *loads)
 {
-    double cosine = pair->cosine[party], weight = point_weight(&pair->manifold);
-    if (cosine < FACE_COSINE)
+    double cosine = fmax(0.0, pair->cosine[party]), side = pair->side_cosine[party];
+    if (cosine == 0.0 && side == 0.0)
         return;
+    double stiffness_n_m = point_weight(&pair->manifold) * pair->stiffness_n_m;
     for (int k = 0; k < pair->manifold.count; k++) {
         double depth_m = pair->manifold.point[k].depth_m - pair->give_m;
-        if (depth_m <= 0.0)
+        if (depth_m <= 0.0) {
+            loads->gap_load_n[own] += stiffness_n_m * depth_m * cosine;
+            loads->gap_slope_n_m[own] += stiffness_n_m * cosine * cosine;
             continue;
-        loads->load_n[own] += weight * pair->stiffness_n_m * depth_m * cosine;
-        loads->slope_n_m[own] += weight * pair->stiffness_n_m * cosine * cosine;
-        loads->facing[own] = loads->facing[own] || pair->cosine[1 - party] >= FACE_COSINE;
+        }
+        loads->load_n[own] += stiffness_n_m * depth_m * cosine;
+        loads->slope_n_m[own] += stiffness_n_m * cosine * cosine;
+        loads->side_load_n[own] += stiffness_n_m * depth_m * side;
+        loads->side_slope_n_m[own] += stiffness_n_m * side * side;
+        loads->facing[own] = loads->facing[own] || pair->cosine[1 - party] >= FACE_COSINE ||
+                             pair->side_cosine[1 - party] != 0.0;
     }
 }
 
+// The face's slip that balances its load, moved by the share of the way.
+static void give_back(cp_crush_block *block, double load_n, double load_slope_n_m, double share_1,
+                      double time_step_s)
+{
+    double excess_n = load_n - cp_crush_block_resistance(block, block->slip_m, time_step_s);
+    double slope_n_m = load_slope_n_m + cp_crush_block_slope(block, block->slip_m, time_step_s);
+    double more_m = slope_n_m > 0.0 ? excess_n / slope_n_m : 0.0;
+    block->slip_m = fmax(0.0, block->slip_m + share_1 * more_m);
+}
+
+// The same sideways, in the direction that it is pushed.
+static void give_aside(cp_crush_block *block, double load_n, double load_slope_n_m, double share_1)
+{
+    double way =
+        block->side_slip_m != 0.0 ? copysign(1.0, block->side_slip_m) : copysign(1.0, load_n);
+    double slip_m = fabs(block->side_slip_m);
+    double excess_n = way * load_n - cp_crush_block_side_resistance(block, slip_m);
+    double slope_n_m = load_slope_n_m + cp_crush_block_side_slope(block, slip_m);
+    double more_m = slope_n_m > 0.0 ? excess_n / slope_n_m : 0.0;
+    block->side_slip_m = way * fmax(0.0, slip_m + share_1 * more_m);
+}
+
 // One round: every block takes the slip that balances its load as it is; where two blocks face
-// each other each takes half. Returns whether any did.
+// each other, or one gives both ways, each takes half. Returns whether any did.
 static bool yield_round(cp_encounter *encounter, double time_step_s, bool *facing)
 {
     block_loads loads[2] = {0};
@@ -174,15 +219,19 @@ static bool yield_round(cp_encounter *encounter, double time_step_s, bool *facin
             cp_crush_block *block = block_of(encounter, party, k);
             if (block == NULL)
                 continue;
-            double excess_n = loads[party].load_n[k] -
-                              cp_crush_block_resistance(block, block->slip_m, time_step_s);
-            double slope_n_m =
-                loads[party].slope_n_m[k] + cp_crush_block_slope(block, block->slip_m, time_step_s);
-            double more_m = slope_n_m > 0.0 ? excess_n / slope_n_m : 0.0;
-            bool faces = loads[party].facing[k];
-            block->slip_m = fmax(0.0, block->slip_m + (faces ? 0.5 : 1.0) * more_m);
-            gave = gave || block->slip_m > 0.0;
-            *facing = *facing || faces;
+            const block_loads *own = &loads[party];
+            bool both_ways = own->slope_n_m[k] > 0.0 && own->side_slope_n_m[k] > 0.0;
+            bool shares = own->facing[k] || both_ways;
+            double share_1 = shares ? 0.5 : 1.0;
+            // A block that has given too much comes back as far as nothing presses on it any more.
+            bool lost = own->slope_n_m[k] == 0.0;
+            give_back(block, lost ? own->gap_load_n[k] : own->load_n[k],
+                      lost ? own->gap_slope_n_m[k] : own->slope_n_m[k], share_1, time_step_s);
+            if (block->side_law.points > 0 &&
+                (own->side_slope_n_m[k] > 0.0 || block->side_slip_m != 0.0))
+                give_aside(block, own->side_load_n[k], own->side_slope_n_m[k], share_1);
+            gave = gave || block->slip_m > 0.0 || block->side_slip_m != 0.0;
+            *facing = *facing || shares;
         }
     }
     return gave;
@@ -197,8 +246,9 @@ static void share_slip(cp_encounter *encounter)
         pair->give_m = 0.0;
         for (int party = 0; party < 2; party++) {
             const cp_crush_block *block = block_of(encounter, party, index[party]);
-            if (block != NULL && pair->cosine[party] >= FACE_COSINE)
-                pair->give_m += block->slip_m * pair->cosine[party];
+            if (block != NULL)
+                pair->give_m += block->slip_m * fmax(0.0, pair->cosine[party]) +
+                                block->side_slip_m * pair->side_cosine[party];
         }
     }
 }
@@ -206,17 +256,69 @@ static void share_slip(cp_encounter *encounter)
 // Blocks give way until what presses on them is what they resist.
 static void yield_blocks(cp_encounter *encounter, double time_step_s)
 {
-    enum { ROUNDS = 2, ROUNDS_FACING = 8 };
+    enum { ROUNDS = 4, ROUNDS_FACING = 10 };
     bool facing = false;
     for (int round = 0; round < (facing ? ROUNDS_FACING : ROUNDS); round++) {
-        if (!yield_round(encounter, time_step_s, &facing))
-            break;
+        bool gave = yield_round(encounter, time_step_s, &facing);
         share_slip(encounter);
+        if (!gave)
+            break;
     }
     for (int party = 0; party < 2; party++)
         for (int k = 0; k < outline_count(encounter, party); k++)
             if (block_of(encounter, party, k) != NULL)
                 cp_crush_block_settle(block_of(encounter, party, k), time_step_s);
+}
+
+// A block resists by at least this share of its force wherever it is pressed on.
+static const double LEAST_SHARE_1 = 0.05;
+
+// Where a block's face is pressed on, along its own left, and how far the outermost of it lies
+// inside the nearer edge of the block.
+typedef struct covered_face {
+    double right_m;
+    double left_m;
+    double inside_m;
+} covered_face;
+
+static void cover_face(const cp_encounter_pair *pair, int party, const cp_outline *outline,
+                       covered_face *covered)
+{
+    if (pair->cosine[party] < FACE_COSINE)
+        return;
+    cp_vec2 left = {-outline->along.y, outline->along.x};
+    for (int k = 0; k < pair->manifold.count; k++) {
+        cp_vec2 reach = cp_vec2_sub(pair->manifold.point[k].position_m, outline->centre_m);
+        double at_m = cp_vec2_dot(reach, left);
+        covered->right_m = fmin(covered->right_m, at_m);
+        covered->left_m = fmax(covered->left_m, at_m);
+        covered->inside_m = fmax(covered->inside_m, outline->half_width_m - fabs(at_m));
+    }
+}
+
+// The share of every block's face that is pressed on: what meets half of its width meets half of
+// its force.
+static void share_faces(cp_encounter *encounter, int party, const cp_outline outline[])
+{
+    covered_face covered[CP_OUTLINES_MAX];
+    for (int k = 0; k < outline_count(encounter, party); k++)
+        covered[k] = (covered_face){INFINITY, -INFINITY, 0.0};
+    for (int k = 0; k < encounter->touching_count; k++) {
+        const int *index = encounter->touching[k].outline;
+        if (block_of(encounter, party, index[party]) != NULL)
+            cover_face(&encounter->pair[index[0]][index[1]], party, &outline[index[party]],
+                       &covered[index[party]]);
+    }
+    for (int k = 0; k < outline_count(encounter, party); k++) {
+        cp_crush_block *block = block_of(encounter, party, k);
+        if (block == NULL)
+            continue;
+        // A dent spreads, but not beyond the block's edge: what only grazes it meets next to
+        // nothing.
+        double dent_m = fmin(CP_CONTACT_PATCH_M, 2.0 * covered[k].inside_m);
+        double covered_m = fmax(0.0, covered[k].left_m - covered[k].right_m) + dent_m;
+        block->share_1 = fmin(1.0, fmax(LEAST_SHARE_1, covered_m / block->full_width_m));
+    }
 }
 
 // Spring and damper of every point; returns the whole pressure, and where its middle is.
@@ -278,9 +380,25 @@ static void place_party(const cp_encounter *encounter, int party, party_now *now
     }
 }
 
+// How the pair's push stands to the block of a party: the normal points from [0] to [1].
+static void set_cosines(const cp_encounter *encounter, cp_encounter_pair *pair, int party,
+                        int index, const cp_outline *outline)
+{
+    pair->cosine[party] = pair->side_cosine[party] = 0.0;
+    if (encounter->car[party] == NULL || encounter->car[party]->outline[index].block < 0)
+        return;
+    cp_vec2 push = cp_vec2_scale(pair->manifold.normal, party == 0 ? -1.0 : 1.0);
+    cp_vec2 left = {-outline->along.y, outline->along.x};
+    pair->cosine[party] = -cp_vec2_dot(push, outline->along);
+    pair->side_cosine[party] = cp_vec2_dot(push, left);
+}
+
 // Whether the pair touches; how, and which way its blocks give.
 static bool touch_pair(cp_encounter *encounter, const party_now now[2], int i, int j)
 {
+    cp_encounter_pair *pair = &encounter->pair[i][j];
+    if (pair->never_meets)
+        return false;
     double reach_m = now[0].reach_m[i] + now[1].reach_m[j];
     cp_vec2 apart = cp_vec2_sub(now[0].outline[i].centre_m, now[1].outline[j].centre_m);
     if (cp_vec2_dot(apart, apart) > reach_m * reach_m)
@@ -288,15 +406,10 @@ static bool touch_pair(cp_encounter *encounter, const party_now now[2], int i, i
     cp_manifold manifold = cp_outline_contact(&now[0].outline[i], &now[1].outline[j], 0.0);
     if (manifold.count == 0)
         return false;
-    cp_encounter_pair *pair = &encounter->pair[i][j];
     pair->manifold = manifold;
     pair->give_m = 0.0;
-    pair->cosine[0] = block_of(encounter, 0, i) == NULL
-                          ? 0.0
-                          : cp_vec2_dot(manifold.normal, now[0].outline[i].along);
-    pair->cosine[1] = block_of(encounter, 1, j) == NULL
-                          ? 0.0
-                          : -cp_vec2_dot(manifold.normal, now[1].outline[j].along);
+    set_cosines(encounter, pair, 0, i, &now[0].outline[i]);
+    set_cosines(encounter, pair, 1, j, &now[1].outline[j]);
     return true;
 }
 
@@ -323,6 +436,8 @@ static void find_touching(cp_encounter *encounter)
         if (pair->manifold.count == 0)
             pair->stuck_m = 0.0;
     }
+    for (int party = 0; party < 2; party++)
+        share_faces(encounter, party, now[party].outline);
 }
 
 void cp_encounter_apply_forces(cp_encounter *encounter, double time_step_s)

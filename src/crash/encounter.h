@@ -14,24 +14,34 @@
  * Applied forces rather than ODE contact joints: the joints of a car then form a system without
  * inequalities, which ODE solves by one factorisation, and two cars stay two independent systems.
  * Crush blocks give way where the contact springs press on them harder than they resist. What one
- * block gives depends on all that presses on it at once, never on the order of the pairs.
+ * block gives depends on all that presses on it at once, never on the order of the pairs. It
+ * resists by the share of its face that is covered, a single point counting as CP_CONTACT_PATCH_M,
+ * less where it lies nearer to the block's edge than half of that.
+ *
+ * The upper load path (radiator support, hood, upper rails) lies above the cross members: those of
+ * two cars pass each other, so that each front meets its like.
  *
  * Damping is limited to what stops the touching bodies within a step, so it only ever dissipates.
  */
 
+/* Width over which a dent spreads. Two points of a pair nearer to each other are one patch. */
+#define CP_CONTACT_PATCH_M 0.12
+
 /* One pair of outlines and its contact of the present step. */
 typedef struct cp_encounter_pair {
-    dBodyID body[2]; /* [1] NULL: the barrier */
+    dBodyID body[2];  /* [1] NULL: the barrier */
+    bool never_meets; /* they lie above each other */
     double stiffness_n_m;
     double damping_n_s_m;
     cp_manifold manifold;    /* count 0: not touching */
     cp_vec2 relative_m_s[3]; /* of [0] against [1] at the two points and at the friction point */
-    double cosine[2];      /* of the normal against the way the block of [0], [1] gives; 0: none */
-    double give_m;         /* along the normal, by which blocks give way in this step */
-    double press_n[2];     /* normal force at the two points */
-    cp_vec2 friction_at_m; /* where friction acts: the middle of the pressure */
-    double drag_n;         /* friction force on [1] along the tangent */
-    double stuck_m;        /* displacement of the friction spring; memory between steps */
+    double cosine[2];        /* of the push on the block of [0], [1] against its face; 0: none */
+    double side_cosine[2];   /* of the same push to the block's left; 0: none */
+    double give_m;           /* along the normal, by which blocks give way in this step */
+    double press_n[2];       /* normal force at the two points */
+    cp_vec2 friction_at_m;   /* where friction acts: the middle of the pressure */
+    double drag_n;           /* friction force on [1] along the tangent */
+    double stuck_m;          /* displacement of the friction spring; memory between steps */
 } cp_encounter_pair;
 
 /* Numbers of the two outlines of a pair that touches in the present step. */

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "crash/front_structure.h"
 
+#include "crash/crush_law.h"
+#include "crash/encounter.h"
+
 #include <string.h>
 
 // ---- plane views of ODE ----------------------------------------------------------------------
@@ -202,35 +205,6 @@ static void join_bodies(cp_car *car, dWorldID world, const layout *at,
                 left);
 }
 
-static cp_crush_law crush_law(const cp_vehicle_model *m, double begin_m, double begin_kn,
-                              double end_m, double end_kn, double stop_kn_m)
-{
-    double stop_n_m = 1e3 * stop_kn_m;
-    double unload_n_m = m->unload_factor_1 * 1e3 * begin_kn / begin_m;
-    return (cp_crush_law){.begin_m = begin_m,
-                          .begin_n = 1e3 * begin_kn,
-                          .end_m = end_m,
-                          .end_n = 1e3 * end_kn,
-                          .unload_n_m = fmax(unload_n_m, stop_n_m),
-                          .stop_n_m = stop_n_m};
-}
-
-// Between engine and firewall, half of it on each side: subframe and mounts give way at a constant
-// force until the engine meets the firewall.
-static cp_crush_law engine_bay_law(const cp_vehicle_model *m)
-{
-    double cradle_n = 0.5e3 * m->engine_cradle_kn;
-    double firewall_n_m = 0.5e3 * m->firewall_stiffness_kn_m;
-    double begin_m = fmin(0.02, 0.5 * m->engine_gap_firewall_m);
-    double unload_n_m = fmax(m->unload_factor_1 * firewall_n_m, 1e3 * m->stop_stiffness_kn_m);
-    return (cp_crush_law){.begin_m = begin_m,
-                          .begin_n = cradle_n,
-                          .end_m = m->engine_gap_firewall_m,
-                          .end_n = cradle_n,
-                          .unload_n_m = fmax(unload_n_m, cradle_n / begin_m),
-                          .stop_n_m = firewall_n_m};
-}
-
 // Compression zero in the undeformed car.
 static void set_axial(cp_car *car, int index, int front, int rear, int axis, cp_vec2 front_point_m,
                       cp_vec2 rear_point_m, bool at_rear, cp_crush_law law)
@@ -243,8 +217,7 @@ static void set_axial(cp_car *car, int index, int front, int rear, int axis, cp_
                                   .rear_point_m = rear_point_m,
                                   .force_at_rear_point = at_rear,
                                   .law = law,
-                                  .damping_n_s_m = 1e3 * car->model->member_damping_kn_s_m,
-                                  .rate_s_m = car->model->crush_rate_s_m};
+                                  .rate_gain_1 = car->model->strain_rate_gain_1};
     cp_vec2 reach = cp_vec2_sub(body_point(car->body[front], front_point_m),
                                 body_point(car->body[rear], rear_point_m));
     element->rest_m = cp_vec2_dot(reach, body_direction(car->body[axis], (cp_vec2){1, 0}));
@@ -254,13 +227,8 @@ static void set_force_elements(cp_car *car, const layout *at, const cp_vec2 plac
 {
     const cp_vehicle_model *m = car->model;
     const cp_vec2 centre = {0.0, 0.0};
-    cp_crush_law longitudinal_law = crush_law(
-        m, m->longitudinal_collapse_begin_m, m->longitudinal_collapse_begin_kn,
-        m->longitudinal_collapse_end_m, m->longitudinal_collapse_end_kn, m->stop_stiffness_kn_m);
-    cp_crush_law box_law = crush_law(m, m->crash_box_collapse_begin_m,
-                                     m->crash_box_collapse_begin_kn, m->crash_box_collapse_end_m,
-                                     m->crash_box_collapse_end_kn, m->stop_stiffness_kn_m);
-    cp_crush_law bay_law = engine_bay_law(m);
+    cp_crush_law longitudinal_law = cp_longitudinal_law(m), box_law = cp_crash_box_law(m),
+                 bay_law = cp_engine_bay_law(m);
 
     for (int side = 0; side < 2; side++) {
         double sign = side == 0 ? 1.0 : -1.0;
@@ -274,7 +242,7 @@ static void set_force_elements(cp_car *car, const layout *at, const cp_vec2 plac
         set_axial(car, 2 + side, box, longitudinal, longitudinal, centre, centre, false, box_law);
         set_axial(car, 4 + side, CP_BODY_ENGINE, CP_BODY_ROOT, CP_BODY_ROOT, engine_back, firewall,
                   false, bay_law);
-        car->axial[4 + side].damping_n_s_m = 0.0;
+        car->axial[4 + side].rate_gain_1 = 0.0;
 
         car->bending[side] = (cp_bending_element){
             .outer = longitudinal,
@@ -302,23 +270,37 @@ typedef struct stripped_part {
     double rear_m;
     double inner_m; /* from the centre line */
     double outer_m;
+    double radius_m; /* rounding of a strip */
 } stripped_part;
+
+static cp_crush_law share_of(const cp_crush_law *whole, double share_1)
+{
+    cp_crush_law law = *whole;
+    for (int k = 0; k < law.points; k++)
+        law.force_n[k] *= share_1;
+    law.stop_n_m *= share_1;
+    law.plateau_n *= share_1;
+    law.unload_n_m *= share_1;
+    law.unload_end_n_m *= share_1;
+    return law;
+}
 
 static void set_strips(cp_car *car, const stripped_part *part, double sign)
 {
     const cp_vehicle_model *m = car->model;
     double share = 1.0 / part->strips, width_m = share * (part->outer_m - part->inner_m);
-    cp_crush_law law = part->law;
-    law.begin_n *= share;
-    law.end_n *= share;
-    law.unload_n_m *= share;
-    law.stop_n_m *= share;
+    cp_crush_law law = share_of(&part->law, share);
+    cp_crush_law side_law = cp_corner_side_law(m);
+    side_law = share_of(&side_law, share);
     for (int k = 0; k < part->strips; k++) {
         int block = car->block_count++;
         car->block[block] =
             (cp_crush_block){.law = law,
-                             .damping_n_s_m = share * 1e3 * m->member_damping_kn_s_m,
-                             .rate_s_m = m->crush_rate_s_m};
+                             .side_law = side_law,
+                             .full_width_m = width_m - 2.0 * fmin(part->radius_m, 0.5 * width_m) +
+                                             CP_CONTACT_PATCH_M,
+                             .rate_gain_1 = m->strain_rate_gain_1,
+                             .share_1 = 1.0};
         car->outline[CP_OUTLINE_BLOCKS + block] =
             (cp_car_outline){.body = CP_BODY_ROOT,
                              .block = block,
@@ -326,6 +308,7 @@ static void set_strips(cp_car *car, const stripped_part *part, double sign)
                                           sign * (part->inner_m + (k + 0.5) * width_m)},
                              .half_length_m = 0.5 * (part->front_m - part->rear_m),
                              .half_width_m = 0.5 * width_m,
+                             .radius_m = part->radius_m,
                              .stiffness_n_m = share * 1e3 * m->contact_stiffness_kn_m};
     }
 }
@@ -336,26 +319,28 @@ static void set_blocks(cp_car *car, const layout *at, double root_m)
     const cp_vehicle_model *m = car->model;
     double rear_m = at->firewall_m - root_m;
     stripped_part corner = {.strips = (int)m->corner_strips_1,
-                            .law = crush_law(m, m->corner_collapse_begin_m,
-                                             m->corner_collapse_begin_kn, m->corner_collapse_end_m,
-                                             m->corner_collapse_end_kn, m->body_stiffness_kn_m),
+                            .law = cp_corner_law(m),
                             .front_m = rear_m + at->corner_length_m,
                             .rear_m = rear_m,
                             .inner_m = at->upper_width_m,
-                            .outer_m = 0.5 * m->width_m};
+                            .outer_m = 0.5 * m->width_m,
+                            .radius_m = m->corner_edge_radius_m};
     stripped_part upper = {.strips = (int)m->upper_strips_1,
-                           .law = crush_law(m, m->upper_collapse_begin_m,
-                                            m->upper_collapse_begin_kn, m->upper_collapse_end_m,
-                                            m->upper_collapse_end_kn, m->body_stiffness_kn_m),
+                           .law = cp_upper_law(m),
                            .front_m = rear_m + at->upper_length_m,
                            .rear_m = rear_m,
                            .inner_m = 0.0,
-                           .outer_m = at->upper_width_m};
+                           .outer_m = at->upper_width_m,
+                           .radius_m = m->corner_radius_m};
     set_strips(car, &corner, 1.0);
     set_strips(car, &corner, -1.0);
     set_strips(car, &upper, 1.0);
     set_strips(car, &upper, -1.0);
     car->outline_count = CP_OUTLINE_BLOCKS + car->block_count;
+
+    // The passenger cell yields at its edges too, where nothing of the front lies before them.
+    car->block[CP_BLOCK_CELL] = (cp_crush_block){
+        .law = cp_cell_edge_law(m), .full_width_m = m->corner_width_m, .share_1 = 1.0};
 }
 
 int cp_car_part_of_block(const cp_car *car, int block)
@@ -374,7 +359,6 @@ static void set_outlines(cp_car *car, const layout *at, const cp_vec2 place[CP_B
     double front_n_m = 1e3 * m->contact_stiffness_kn_m, body_n_m = 1e3 * m->body_stiffness_kn_m;
     double front_n_s_m = 2.0 * m->contact_damping_1 * sqrt(front_n_m * contact_mass_kg);
     double body_n_s_m = 2.0 * m->body_damping_1 * sqrt(body_n_m * 0.5 * m->mass_kg);
-    double r = m->corner_radius_m;
     for (int side = 0; side < 2; side++) {
         // A half swept back keeps its inner end in front.
         double sign = side == 0 ? 1.0 : -1.0, sweep_rad = sign * m->cross_member_sweep_rad;
@@ -393,7 +377,7 @@ static void set_outlines(cp_car *car, const layout *at, const cp_vec2 place[CP_B
     double rear_m = m->cg_to_front_m - m->length_m;
     car->outline[CP_OUTLINE_BODY] =
         (cp_car_outline){.body = CP_BODY_ROOT,
-                         .block = -1,
+                         .block = CP_BLOCK_CELL,
                          .centre_m = {0.5 * (rear_m + at->firewall_m) - place[CP_BODY_ROOT].x, 0.0},
                          .half_length_m = 0.5 * (at->firewall_m - rear_m),
                          .half_width_m = 0.5 * m->width_m};
@@ -401,11 +385,12 @@ static void set_outlines(cp_car *car, const layout *at, const cp_vec2 place[CP_B
         cp_car_outline *outline = &car->outline[k];
         if (k >= 2)
             outline->along = (cp_vec2){1.0, 0.0};
-        bool body = outline->body == CP_BODY_ROOT && outline->block < 0;
-        outline->radius_m = fmin(r, fmin(outline->half_length_m, outline->half_width_m));
-        if (outline->block < 0)
+        bool body = k == CP_OUTLINE_BODY, block = outline->block >= 0 && !body;
+        double radius_m = block ? outline->radius_m : body ? m->cell_radius_m : m->corner_radius_m;
+        outline->radius_m = fmin(radius_m, fmin(outline->half_length_m, outline->half_width_m));
+        if (!block)
             outline->stiffness_n_m = body ? body_n_m : front_n_m;
-        outline->damping_n_s_m = outline->block >= 0 ? 0.0 : body ? body_n_s_m : front_n_s_m;
+        outline->damping_n_s_m = block ? 0.0 : body ? body_n_s_m : front_n_s_m;
     }
 }
 
@@ -450,21 +435,17 @@ static axial_view view_axial(const cp_car *car, const cp_axial_element *element)
     return view;
 }
 
-// Linear damper, and what the rate adds to the force of a collapse (not of a stop).
-static double damping_force(const cp_axial_element *element, double crush_n, double rate_m_s)
-{
-    double collapse_n = fmin(crush_n, fmax(element->law.begin_n, element->law.end_n));
-    double rate_n_s_m = rate_m_s > 0.0 ? element->rate_s_m * collapse_n : 0.0;
-    return (element->damping_n_s_m + rate_n_s_m) * rate_m_s;
-}
-
 static void apply_axial(cp_car *car, cp_axial_element *element)
 {
     axial_view view = view_axial(car, element);
-    element->rate_m_s = view.rate_m_s;
     double force_n = cp_crush_force(&element->law, &element->state, view.s_m);
-    element->damping_n = damping_force(element, force_n, view.rate_m_s);
-    force_n += element->damping_n;
+
+    // The rate adds to the force of a collapse, not to a stop's, and only while it goes on.
+    element->rate_m_s = view.rate_m_s;
+    double collapse_n = fmax(0.0, fmin(force_n, cp_crush_collapse_force(&element->law)));
+    double factor = cp_strain_rate_factor(element->rate_gain_1, view.rate_m_s);
+    element->rate_n = (factor - 1.0) * collapse_n;
+    force_n += element->rate_n;
     push_apart(car->body[element->front], car->body[element->rear],
                cp_vec2_scale(view.direction, force_n), view.point_m);
 }
@@ -547,6 +528,20 @@ static cp_vec2 hinge_gap(dJointID hinge)
     return (cp_vec2){one[0] - other[0], one[1] - other[1]};
 }
 
+// How far a block's face can go before what is left of it moves on as a whole; a rest stays.
+static double usable_length(const cp_car *car, int block)
+{
+    const double rest_m = 0.02;
+    const cp_crush_law *law = &car->block[block].law;
+    double length_m = 2.0 * car->outline[CP_OUTLINE_BLOCKS + block].half_length_m - rest_m;
+    return fmax(0.0, fmin(length_m, law->s_m[law->points - 1]));
+}
+
+static double block_intrusion(const cp_car *car, int block)
+{
+    return fmax(0.0, car->block[block].s_m - usable_length(car, block));
+}
+
 void cp_car_apply_forces(cp_car *car)
 {
     for (int k = 0; k < CP_HINGE_COUNT; k++)
@@ -564,19 +559,19 @@ void cp_car_after_step(cp_car *car, double time_step_s)
     for (int k = 0; k < CP_HINGE_COUNT; k++)
         mend_hinge(car, k, time_step_s);
 
-    // Work of a damper over the step: its force times the mean of the rates before and after.
+    // Work over the step: the force times the mean of the rates before and after.
     for (int k = 0; k < CP_AXIAL_COUNT; k++) {
-        const cp_axial_element *element = &car->axial[k];
-        if (element->damping_n == 0.0)
+        cp_axial_element *element = &car->axial[k];
+        if (element->rate_n == 0.0)
             continue;
         double rate_m_s = 0.5 * (element->rate_m_s + view_axial(car, element).rate_m_s);
-        car->joint_damping_j += element->damping_n * rate_m_s * time_step_s;
+        element->rate_j += element->rate_n * rate_m_s * time_step_s;
     }
     for (int k = 0; k < CP_TIE_COUNT; k++) {
         const cp_tie_element *tie = &car->tie[k];
         cp_vec2 point_m = body_point(car->body[CP_BODY_ENGINE], tie->engine_point_m);
         cp_vec2 rate = cp_vec2_scale(cp_vec2_add(tie->rate_m_s, tie_rate(car, tie, point_m)), 0.5);
-        car->joint_damping_j += cp_vec2_dot(tie->damping_n, rate) * time_step_s;
+        car->mount_damping_j += cp_vec2_dot(tie->damping_n, rate) * time_step_s;
     }
 
     // Shortening of each side: longitudinal and crash box together.
@@ -585,6 +580,10 @@ void cp_car_after_step(cp_car *car, double time_step_s)
             view_axial(car, &car->axial[side]).s_m + view_axial(car, &car->axial[2 + side]).s_m;
         car->crush_m = fmax(car->crush_m, shortening_m);
     }
+    car->intrusion_m = fmax(car->intrusion_m, car->block[CP_BLOCK_CELL].s_m);
+    for (int k = 0; k < car->block_count; k++)
+        car->intrusion_m = fmax(car->intrusion_m, block_intrusion(car, k));
+    car->block[CP_BLOCK_CELL].s_m = car->intrusion_m;
 }
 
 // ---- views -----------------------------------------------------------------------------------
@@ -593,18 +592,25 @@ cp_outline cp_car_outline_now(const cp_car *car, int index)
 {
     const cp_car_outline *outline = &car->outline[index];
     dBodyID body = car->body[outline->body];
-
-    // A block's face has been pushed in; its rear stays until nothing but its rounding is left,
-    // which then goes into the passenger cell.
-    double pushed_m = outline->block >= 0 ? car->block[outline->block].s_m : 0.0;
-    double shorter_m = fmin(0.5 * pushed_m, outline->half_length_m - outline->radius_m);
     cp_vec2 centre_m = outline->centre_m;
-    centre_m.x -= pushed_m - shorter_m;
+    double half_length_m = outline->half_length_m;
+
+    // A block's face has been pushed in; its rear stays until it is used up, then what is left of
+    // it goes on into the passenger cell, whose front is pushed back as far.
+    if (index >= CP_OUTLINE_BLOCKS) {
+        const cp_crush_block *block = &car->block[outline->block];
+        half_length_m -= 0.5 * fmin(block->s_m, usable_length(car, outline->block));
+        centre_m.x += outline->half_length_m - block->s_m - half_length_m;
+        centre_m.y += block->side_m;
+    } else if (index == CP_OUTLINE_BODY) {
+        half_length_m -= 0.5 * fmin(car->intrusion_m, half_length_m);
+        centre_m.x -= outline->half_length_m - half_length_m;
+    }
     return (cp_outline){.centre_m = body_point(body, centre_m),
                         .along = body_direction(body, outline->along),
-                        .half_length_m = outline->half_length_m - shorter_m,
+                        .half_length_m = half_length_m,
                         .half_width_m = outline->half_width_m,
-                        .radius_m = outline->radius_m};
+                        .radius_m = fmin(outline->radius_m, half_length_m)};
 }
 
 cp_body_state cp_car_cog_state(const cp_car *car)
@@ -645,25 +651,35 @@ double cp_car_elastic_energy(const cp_car *car)
     return energy_j;
 }
 
-double cp_car_plastic_energy(const cp_car *car)
+cp_car_absorbed cp_car_energy_absorbed(const cp_car *car)
 {
-    double energy_j = 0.0;
-    for (int k = 0; k < CP_AXIAL_COUNT; k++)
-        energy_j += cp_crush_plastic_energy(&car->axial[k].law, &car->axial[k].state);
+    cp_car_absorbed absorbed = {.engine_j = car->mount_damping_j};
+    for (int side = 0; side < 2; side++) {
+        const cp_axial_element *rail = &car->axial[side], *box = &car->axial[2 + side],
+                               *bay = &car->axial[4 + side];
+        absorbed.longitudinal_j += cp_crush_plastic_energy(&rail->law, &rail->state);
+        absorbed.crash_box_j += cp_crush_plastic_energy(&box->law, &box->state);
+        absorbed.engine_j += cp_crush_plastic_energy(&bay->law, &bay->state);
+        absorbed.engine_j += car->tie[side].plastic_j;
+        absorbed.rate_j += rail->rate_j + box->rate_j;
+    }
     for (int k = 0; k < CP_BENDING_COUNT; k++)
-        energy_j += car->bending[k].state.plastic_j;
-    for (int k = 0; k < CP_TIE_COUNT; k++)
-        energy_j += car->tie[k].plastic_j;
-    return energy_j;
+        absorbed.bending_j += car->bending[k].state.plastic_j;
+    absorbed.corner_j += car->block[CP_BLOCK_CELL].plastic_j;
+    for (int k = 0; k < car->block_count; k++) {
+        bool corner = cp_car_part_of_block(car, k) < 2;
+        *(corner ? &absorbed.corner_j : &absorbed.upper_j) += car->block[k].plastic_j;
+        absorbed.rate_j += car->block[k].rate_j;
+    }
+    return absorbed;
 }
 
-void cp_car_block_energy(const cp_car *car, double *plastic_j, double *damping_j)
+double cp_car_block_energy(const cp_car *car)
 {
-    *plastic_j = *damping_j = 0.0;
-    for (int k = 0; k < car->block_count; k++) {
-        *plastic_j += car->block[k].plastic_j;
-        *damping_j += car->block[k].damping_j;
-    }
+    double energy_j = car->block[CP_BLOCK_CELL].plastic_j;
+    for (int k = 0; k < car->block_count; k++)
+        energy_j += car->block[k].plastic_j + car->block[k].rate_j;
+    return energy_j;
 }
 
 cp_vec2 cp_car_momentum(const cp_car *car, double *angular_kg_m2_s)

@@ -4,6 +4,7 @@
 
 #include "crash/contact.h"
 #include "crash/crash_configuration.h"
+#include "crash/crash_simulation.h"
 #include "crash/crush_block.h"
 #include "crash/crush_element.h"
 
@@ -38,10 +39,10 @@ typedef struct cp_axial_element {
     double rest_m;
     cp_crush_law law;
     cp_crush_state state;
-    double damping_n_s_m;
-    double rate_s_m;  /* share of the collapse force per m/s of crush rate */
-    double damping_n; /* damping force of the present step, and the rate it came from */
+    double rate_gain_1; /* of cp_strain_rate_factor */
+    double rate_n;      /* what the rate adds to the force of the present step, and the rate */
     double rate_m_s;
+    double rate_j; /* dissipated by it so far */
 } cp_axial_element;
 
 /* Plastic hinge between two bodies. */
@@ -69,7 +70,8 @@ enum {
     CP_TIE_COUNT = 2,
     CP_STRIPS_MAX = 4, /* of a corner, of half of the upper load path */
     CP_BLOCKS_MAX = 4 * CP_STRIPS_MAX,
-    CP_OUTLINE_ENGINE = 2, /* after the halves of the cross member */
+    CP_BLOCK_CELL = CP_BLOCKS_MAX, /* edges of the passenger cell */
+    CP_OUTLINE_ENGINE = 2,         /* after the halves of the cross member */
     CP_OUTLINE_BODY,
     CP_OUTLINE_BLOCKS, /* and one for every block */
     CP_OUTLINES_MAX = CP_OUTLINE_BLOCKS + CP_BLOCKS_MAX,
@@ -98,16 +100,18 @@ typedef struct cp_car {
     cp_axial_element axial[CP_AXIAL_COUNT];
     cp_bending_element bending[CP_BENDING_COUNT];
     cp_tie_element tie[CP_TIE_COUNT];
-    cp_crush_block block[CP_BLOCKS_MAX]; /* strips of the corners left, right, of the upper load
-                                          * path left, right; from the middle outwards */
+    cp_crush_block block[CP_BLOCKS_MAX + 1]; /* strips of the corners left, right, of the upper load
+                                              * path left, right; from the middle outwards; then at
+                                              * CP_BLOCK_CELL the cell */
     int block_count;
     cp_car_outline outline[CP_OUTLINES_MAX];
     int outline_count;
     dJointID hinge[CP_HINGE_COUNT];
     dJointFeedback hinge_feedback[CP_HINGE_COUNT];
     cp_vec2 hinge_gap_m[CP_HINGE_COUNT]; /* between its two anchors at the step's beginning */
-    double joint_damping_j;              /* dissipated by dampers so far */
-    double crush_m;                      /* largest shortening bumper to firewall so far */
+    double mount_damping_j;              /* dissipated by the dampers of the engine's ties so far */
+    double intrusion_m; /* deepest that a used up block has been pushed into the passenger cell */
+    double crush_m;     /* largest shortening bumper to firewall so far */
 } cp_car;
 
 /* Build the car in the world at a state. The world owns bodies and joints, and knows where the car
@@ -134,9 +138,10 @@ cp_body_state cp_car_cog_state(const cp_car *car);
 
 double cp_car_kinetic_energy(const cp_car *car);
 double cp_car_elastic_energy(const cp_car *car);
-double cp_car_plastic_energy(const cp_car *car);
-/* Of what the crush blocks have taken: plastic, and by their rate. Part of the contact's work. */
-void cp_car_block_energy(const cp_car *car, double *plastic_j, double *damping_j);
+/* What its parts have dissipated so far. The blocks' is part of the contact's work. */
+cp_car_absorbed cp_car_energy_absorbed(const cp_car *car);
+/* Of rate_j, corner_j and upper_j what the blocks have taken. */
+double cp_car_block_energy(const cp_car *car);
 /* Linear momentum, and angular momentum about the world's origin (z). */
 cp_vec2 cp_car_momentum(const cp_car *car, double *angular_kg_m2_s);
 

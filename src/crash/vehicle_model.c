@@ -3,8 +3,10 @@
 
 #include "core/file.h"
 #include "core/hash.h"
+#include "core/log.h"
 #include "core/units.h"
 #include "core/yaml_file.h"
+#include "crash/crush_law.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -57,6 +59,18 @@ void cp_vehicle_model_set(cp_vehicle_model *model, size_t index, double value)
     memcpy((char *)model + CP_VEHICLE_PARAMETER[index].offset, &value, sizeof value);
 }
 
+cp_vehicle_model cp_vehicle_model_member(const cp_vehicle_model *model, size_t index)
+{
+    cp_vehicle_model member = *model;
+    for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++)
+        cp_vehicle_model_set(&member, k, model->member[index][k]);
+
+    // An outline stretched over a traffic vehicle stays.
+    member.length_m = fmax(member.length_m, model->length_m);
+    member.width_m = fmax(member.width_m, model->width_m);
+    return member;
+}
+
 size_t cp_vehicle_parameter_index(const char *name)
 {
     size_t index = 0;
@@ -93,6 +107,12 @@ typedef struct yaml_barrier {
     char *source;
 } yaml_barrier;
 
+typedef struct yaml_ensemble {
+    char *name;
+    char **values;
+    unsigned values_count;
+} yaml_ensemble;
+
 typedef struct yaml_vehicle {
     char *vehicle;
     char *description;
@@ -100,6 +120,8 @@ typedef struct yaml_vehicle {
     yaml_barrier *barrier;
     yaml_parameter *parameters;
     unsigned parameters_count;
+    yaml_ensemble *ensemble;
+    unsigned ensemble_count;
 } yaml_vehicle;
 
 #define OPTIONAL_TEXT(key, type)                                                                   \
@@ -127,6 +149,18 @@ static const cyaml_schema_field_t BARRIER_FIELDS[] = {
     REQUIRED_TEXT(corner_radius_m, yaml_barrier), REQUIRED_TEXT(pivot_m, yaml_barrier),
     OPTIONAL_TEXT(source, yaml_barrier),          CYAML_FIELD_END};
 
+static const cyaml_schema_value_t MEMBER_VALUE = {
+    CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char, 0, CYAML_UNLIMITED)};
+
+static const cyaml_schema_field_t ENSEMBLE_FIELDS[] = {
+    REQUIRED_TEXT(name, yaml_ensemble),
+    CYAML_FIELD_SEQUENCE("values", CYAML_FLAG_POINTER, yaml_ensemble, values, &MEMBER_VALUE, 1,
+                         CP_ENSEMBLE_MAX),
+    CYAML_FIELD_END};
+
+static const cyaml_schema_value_t ENSEMBLE_VALUE = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, yaml_ensemble, ENSEMBLE_FIELDS)};
+
 static const cyaml_schema_field_t VEHICLE_FIELDS[] = {
     REQUIRED_TEXT(vehicle, yaml_vehicle),
     OPTIONAL_TEXT(description, yaml_vehicle),
@@ -136,6 +170,8 @@ static const cyaml_schema_field_t VEHICLE_FIELDS[] = {
                             barrier, BARRIER_FIELDS),
     CYAML_FIELD_SEQUENCE("parameters", CYAML_FLAG_POINTER, yaml_vehicle, parameters,
                          &PARAMETER_VALUE, 0, CYAML_UNLIMITED),
+    CYAML_FIELD_SEQUENCE("ensemble", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_vehicle,
+                         ensemble, &ENSEMBLE_VALUE, 1, CYAML_UNLIMITED),
     CYAML_FIELD_END};
 
 static const cyaml_schema_value_t VEHICLE_VALUE = {
@@ -184,12 +220,31 @@ static cp_status read_barrier(const cp_yaml_file *file, const yaml_barrier *give
     return status == CP_OK ? cp_barrier_validate(barrier, error) : status;
 }
 
+// What takes the place of a parameter of an earlier version of the model, or NULL.
+static const char *successor_of(const char *name)
+{
+#define CP_VEHICLE_SUCCESSOR(former, successor)                                                    \
+    if (strcmp(name, former) == 0)                                                                 \
+        return successor;
+    CP_VEHICLE_FORMER_PARAMETERS(CP_VEHICLE_SUCCESSOR)
+#undef CP_VEHICLE_SUCCESSOR
+    return NULL;
+}
+
 static cp_status read_parameter(const cp_yaml_file *file, const yaml_parameter *entry, size_t row,
                                 bool *given, cp_vehicle_model *model, cp_error *error)
 {
     char key_path[128];
     snprintf(key_path, sizeof key_path, "parameters[%zu].name", row);
     size_t index = cp_vehicle_parameter_index(entry->name);
+    if (successor_of(entry->name) != NULL) {
+        cp_log_warning("%s:%zu: %s is no longer part of the vehicle model and is not used: crush "
+                       "forces grow with the rate by %s. Fit this vehicle anew (crashpulse "
+                       "calibrate) and leave it out",
+                       file->path, cp_yaml_line_of(file, key_path), entry->name,
+                       successor_of(entry->name));
+        return CP_OK;
+    }
     if (index == CP_VEHICLE_PARAMETER_COUNT)
         return cp_yaml_fail(file, error, key_path, "'%s' is no parameter of the vehicle model",
                             entry->name);
@@ -225,6 +280,53 @@ static cp_status read_parameter(const cp_yaml_file *file, const yaml_parameter *
     return CP_OK;
 }
 
+// One parameter in every set of the ensemble.
+static cp_status read_ensemble_row(const cp_yaml_file *file, const yaml_ensemble *entry, size_t row,
+                                   cp_vehicle_model *model, cp_error *error)
+{
+    char key_path[128];
+    snprintf(key_path, sizeof key_path, "ensemble[%zu].name", row);
+    size_t index = cp_vehicle_parameter_index(entry->name);
+    if (index == CP_VEHICLE_PARAMETER_COUNT)
+        return cp_yaml_fail(file, error, key_path, "'%s' is no parameter of the vehicle model",
+                            entry->name);
+    snprintf(key_path, sizeof key_path, "ensemble[%zu].values", row);
+    if (entry->values_count != model->member_count)
+        return cp_yaml_fail(file, error, key_path,
+                            "must have as many values as the first parameter's, %zu, found %u",
+                            model->member_count, entry->values_count);
+    for (unsigned m = 0; m < entry->values_count; m++) {
+        snprintf(key_path, sizeof key_path, "ensemble[%zu].values[%u]", row, m);
+        cp_status status = cp_yaml_number(file, key_path, entry->values[m], model->smallest[index],
+                                          model->largest[index], &model->member[m][index], error);
+        if (status != CP_OK)
+            return cp_error_prefix(error, "parameter '%s': ", entry->name);
+    }
+    return CP_OK;
+}
+
+// The ensemble: what it does not name is as in the car itself. Every set must be a car.
+static cp_status read_ensemble(const cp_yaml_file *file, const yaml_vehicle *vehicle,
+                               cp_vehicle_model *model, cp_error *error)
+{
+    if (vehicle->ensemble_count == 0)
+        return CP_OK;
+    model->member_count = vehicle->ensemble[0].values_count;
+    for (size_t m = 0; m < model->member_count; m++)
+        for (size_t k = 0; k < CP_VEHICLE_PARAMETER_COUNT; k++)
+            model->member[m][k] = cp_vehicle_model_get(model, k);
+    cp_status status = CP_OK;
+    for (size_t row = 0; status == CP_OK && row < vehicle->ensemble_count; row++)
+        status = read_ensemble_row(file, &vehicle->ensemble[row], row, model, error);
+    for (size_t m = 0; status == CP_OK && m < model->member_count; m++) {
+        cp_vehicle_model member = cp_vehicle_model_member(model, m);
+        status = cp_vehicle_model_validate(&member, error);
+        if (status != CP_OK)
+            status = cp_error_prefix(error, "%s: set %zu of the ensemble: ", file->path, m + 1);
+    }
+    return status;
+}
+
 cp_status cp_vehicle_model_parse(const char *name, const char *content, size_t size,
                                  cp_vehicle_model *model, cp_error *error)
 {
@@ -248,6 +350,11 @@ cp_status cp_vehicle_model_parse(const char *name, const char *content, size_t s
     bool given[CP_VEHICLE_PARAMETER_TOTAL] = {false};
     for (size_t row = 0; status == CP_OK && row < vehicle->parameters_count; row++)
         status = read_parameter(&file, &vehicle->parameters[row], row, given, model, error);
+    if (!given[cp_vehicle_parameter_index("longitudinal_collapse_middle_kn")])
+        model->longitudinal_collapse_middle_kn =
+            0.5 * (model->longitudinal_collapse_begin_kn + model->longitudinal_collapse_end_kn);
+    if (status == CP_OK)
+        status = read_ensemble(&file, vehicle, model, error);
     cp_yaml_close(&file);
     if (status != CP_OK)
         return status;
@@ -297,10 +404,10 @@ static cp_status check_collapse(cp_error *error, const char *element, double beg
     return CP_OK;
 }
 
-// Steepest slope of a crush element: unloading, or the stop.
-static double steepest_n_m(const cp_vehicle_model *m, double begin_m, double begin_kn)
+// Steepest slope of a crush law: unloading where nothing is left, or the stop.
+static double steepest_n_m(const cp_crush_law *law)
 {
-    return fmax(m->unload_factor_1 * 1e3 * begin_kn / begin_m, 1e3 * m->stop_stiffness_kn_m);
+    return fmax(law->unload_end_n_m, law->stop_n_m);
 }
 
 static double in_parallel(double one, double other)
@@ -314,20 +421,19 @@ double cp_vehicle_model_largest_step(const cp_vehicle_model *m, const char **ele
     // member half on its two contact points rocks at 6 k / m.
     double front_kg = m->crash_box_mass_kg + m->cross_member_mass_kg;
     double root_kg = 0.4 * m->mass_kg;
+    cp_crush_law box = cp_crash_box_law(m), rail = cp_longitudinal_law(m),
+                 bay = cp_engine_bay_law(m);
     const struct {
         const char *name;
         double omega_square;
     } ELEMENTS[] = {
-        {"crash box (unload_factor_1 * crash_box_collapse_begin_kn / crash_box_collapse_begin_m)",
-         steepest_n_m(m, m->crash_box_collapse_begin_m, m->crash_box_collapse_begin_kn) /
-             in_parallel(front_kg, m->longitudinal_mass_kg)},
-        {"longitudinal (unload_factor_1 * longitudinal_collapse_begin_kn / "
+        {"crash box (unload_end_factor_1 times the steepest of bumper and crash box)",
+         steepest_n_m(&box) / in_parallel(front_kg, m->longitudinal_mass_kg)},
+        {"longitudinal (unload_end_factor_1 * longitudinal_collapse_begin_kn / "
          "longitudinal_collapse_begin_m)",
-         steepest_n_m(m, m->longitudinal_collapse_begin_m, m->longitudinal_collapse_begin_kn) /
-             in_parallel(front_kg + m->longitudinal_mass_kg, root_kg)},
-        {"firewall (unload_factor_1 * firewall_stiffness_kn_m)",
-         steepest_n_m(m, 1.0, m->firewall_stiffness_kn_m) /
-             in_parallel(m->engine_mass_kg, root_kg)},
+         steepest_n_m(&rail) / in_parallel(front_kg + m->longitudinal_mass_kg, root_kg)},
+        {"firewall (unload_end_factor_1 * firewall_stiffness_kn_m)",
+         2.0 * steepest_n_m(&bay) / in_parallel(m->engine_mass_kg, root_kg)},
         {"contact (contact_stiffness_kn_m)",
          6e3 * m->contact_stiffness_kn_m / m->cross_member_mass_kg},
     };
@@ -381,6 +487,11 @@ cp_status cp_vehicle_model_validate(const cp_vehicle_model *m, cp_error *error)
         return cp_fail(error, CP_BAD_INPUT,
                        "longitudinal_y_m must be below cross_member_half_width_m = %g, found %g",
                        m->cross_member_half_width_m, m->longitudinal_y_m);
+    if (m->bumper_stroke_m > 0.75 * m->cross_member_depth_m)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "bumper_stroke_m must not exceed three quarters of cross_member_depth_m = "
+                       "%g, found %g",
+                       m->cross_member_depth_m, m->bumper_stroke_m);
     if (2.0 * m->corner_radius_m > m->cross_member_depth_m)
         return cp_fail(
             error, CP_BAD_INPUT,

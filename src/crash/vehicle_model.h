@@ -24,12 +24,17 @@
     X(longitudinal_mass_kg, "kg", 22, 10, 60, "one longitudinal member")                           \
     X(longitudinal_collapse_begin_m, "m", 0.02, 0.005, 0.1, "compression where collapse begins")   \
     X(longitudinal_collapse_begin_kn, "kN", 150, 10, 800, "force where collapse begins")           \
+    X(longitudinal_collapse_middle_kn, "kN", 205, 10, 1000,                                        \
+      "force half-way between begin and end; not given: on the line between them")                 \
     X(longitudinal_collapse_end_m, "m", 0.5, 0.1, 0.9,                                             \
       "compression where nothing is left to collapse")                                             \
     X(longitudinal_collapse_end_kn, "kN", 260, 10, 1500,                                           \
       "force where nothing is left to collapse")                                                   \
     X(longitudinal_bending_kn_m, "kN m", 20, 0.5, 200, "bending moment where its foot yields")     \
     X(longitudinal_bending_begin_rad, "rad", 0.04, 0.005, 0.3, "rotation where its foot yields")   \
+    X(bumper_stroke_m, "m", 0, 0, 0.12,                                                            \
+      "travel of the bumper (foam, beam section) before a crash box collapses; 0: none")           \
+    X(bumper_kn, "kN", 20, 1, 150, "force of the bumper over its travel, on each box")             \
     X(crash_box_length_m, "m", 0.2, 0.08, 0.35, "one crash box")                                   \
     X(crash_box_mass_kg, "kg", 8, 2, 30, "one crash box with what is bolted to it")                \
     X(crash_box_collapse_begin_m, "m", 0.015, 0.005, 0.1, "compression where collapse begins")     \
@@ -63,6 +68,10 @@
     X(corner_collapse_begin_kn, "kN", 40, 1, 400, "force where collapse begins")                   \
     X(corner_collapse_end_m, "m", 0.5, 0.1, 0.9, "compression where nothing is left")              \
     X(corner_collapse_end_kn, "kN", 90, 1, 800, "force where nothing is left")                     \
+    X(corner_side_kn, "kN", 80, 5, 400,                                                            \
+      "sideways force at which a corner or half of the upper path is pushed aside")                \
+    X(corner_side_m, "m", 0.25, 0.05, 0.6, "way aside until it rests on the body")                 \
+    X(corner_edge_radius_m, "m", 0.12, 0.01, 0.4, "rounding of the outboard corner in plan")       \
     X(upper_gap_m, "m", 0.15, 0.0, 0.8,                                                            \
       "bumper front to front of the upper load path (radiator support, hood, upper rails)")        \
     X(upper_strips_1, "1", 1, 1, 4,                                                                \
@@ -71,22 +80,34 @@
     X(upper_collapse_begin_kn, "kN", 10, 0.5, 400, "force where collapse begins")                  \
     X(upper_collapse_end_m, "m", 0.5, 0.1, 0.9, "compression where nothing is left")               \
     X(upper_collapse_end_kn, "kN", 20, 0.5, 800, "force where nothing is left")                    \
-    X(unload_factor_1, "1", 3, 1, 30,                                                              \
-      "unloading stiffness over loading stiffness of every element")                               \
+    X(unload_factor_1, "1", 2, 1, 30,                                                              \
+      "unloading stiffness over loading stiffness of every element where its collapse begins")     \
+    X(unload_end_factor_1, "1", 4, 1, 60, "the same where nothing is left to collapse")            \
     X(stop_stiffness_kn_m, "kN/m", 4000, 200, 50000,                                               \
       "members and crash boxes beyond the end of their collapse")                                  \
-    X(member_damping_kn_s_m, "kN s/m", 1, 0, 10, "along every prismatic joint")                    \
-    X(crush_rate_s_m, "s/m", 0, 0, 0.05,                                                           \
-      "share by which every collapse force grows per m/s of crush rate (strain rate)")             \
+    X(strain_rate_gain_1, "1", 0.25, 0, 0.4,                                                       \
+      "what a crush rate of 10 m/s adds to every collapse force (Cowper-Symonds)")                 \
+    X(cell_edge_kn, "kN", 200, 50, 600,                                                            \
+      "force at which the edge of the passenger cell (hinge pillar, sill) behind a corner yields") \
+    X(cell_kn, "kN", 650, 200, 2000,                                                               \
+      "force at which the rest of the cell's front yields: feet of the longitudinal members, "     \
+      "firewall behind the engine, cowl")                                                          \
+    X(cell_radius_m, "m", 0.15, 0.01, 0.4, "rounding of the passenger cell in plan")               \
     X(contact_stiffness_kn_m, "kN/m", 8000, 1000, 50000, "front outlines in contact")              \
     X(contact_damping_1, "1", 0.3, 0, 1,                                                           \
       "share of critical damping of front contacts at a cross member half")                        \
     X(body_stiffness_kn_m, "kN/m", 700, 50, 20000,                                                 \
-      "sides, rear and firewall as struck by another, and behind used up corners and upper parts") \
+      "sides and rear as struck by another, and the cell behind used up corners and upper parts")  \
     X(body_damping_1, "1", 0.7, 0, 3,                                                              \
       "share of critical damping of body contacts at half the car's mass")                         \
-    X(corner_radius_m, "m", 0.06, 0.01, 0.3, "rounding of the contact outlines")                   \
+    X(corner_radius_m, "m", 0.06, 0.01, 0.3, "rounding of cross member, engine and upper path")    \
     X(friction_1, "1", 0.45, 0, 1.5, "Coulomb friction against barrier or opponent")
+
+/* Parameters of earlier versions of the model, still read in vehicle files and no longer used:
+ * X(name, what takes its place). */
+#define CP_VEHICLE_FORMER_PARAMETERS(X)                                                            \
+    X("member_damping_kn_s_m", "strain_rate_gain_1")                                               \
+    X("crush_rate_s_m", "strain_rate_gain_1")
 
 /* Number of parameters. */
 enum {
@@ -94,6 +115,9 @@ enum {
     CP_VEHICLE_PARAMETER_TOTAL = 0 CP_VEHICLE_PARAMETERS(CP_VEHICLE_COUNT_ONE)
 #undef CP_VEHICLE_COUNT_ONE
 };
+
+/* Most parameter sets of an ensemble. */
+enum { CP_ENSEMBLE_MAX = 10 };
 
 typedef struct cp_vehicle_model {
     char name[64]; /* of the file: "honda_accord_2014" */
@@ -112,6 +136,9 @@ typedef struct cp_vehicle_model {
     /* Bounds of each parameter: the file's own, else the table's. */
     double smallest[CP_VEHICLE_PARAMETER_TOTAL];
     double largest[CP_VEHICLE_PARAMETER_TOTAL];
+    /* Parameter sets that fit its references about as well: what the fit does not know. */
+    size_t member_count; /* 0: none kept */
+    double member[CP_ENSEMBLE_MAX][CP_VEHICLE_PARAMETER_TOTAL];
 #define CP_VEHICLE_FIELD(field, unit, value, smallest, largest, what) double field;
     CP_VEHICLE_PARAMETERS(CP_VEHICLE_FIELD)
 #undef CP_VEHICLE_FIELD
@@ -136,6 +163,8 @@ cp_vehicle_model cp_vehicle_model_default(void);
 /* Value of parameter number index. */
 double cp_vehicle_model_get(const cp_vehicle_model *model, size_t index);
 void cp_vehicle_model_set(cp_vehicle_model *model, size_t index, double value);
+/* The car by parameter set number index (< member_count) of its ensemble. */
+cp_vehicle_model cp_vehicle_model_member(const cp_vehicle_model *model, size_t index);
 /* Index of a parameter by name, or CP_VEHICLE_PARAMETER_COUNT. */
 size_t cp_vehicle_parameter_index(const char *name);
 

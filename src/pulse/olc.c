@@ -125,3 +125,21 @@ cp_olc cp_olc_from_velocity(const double *vx_m_s, size_t count, double interval_
     }
     return olc;
 }
+
+double cp_olc_sd(const cp_olc *olc, size_t count)
+{
+    if (count < 2)
+        return NAN;
+    double sum_g = 0.0, square_g2 = 0.0;
+    for (size_t k = 0; k < count; k++) {
+        if (olc[k].status == CP_OLC_SIMULATION_FAILED || olc[k].status == CP_OLC_NOT_FRONT_CONTACT)
+            return NAN;
+        sum_g += olc[k].status == CP_OLC_VALUE ? olc[k].olc_g : 0.0;
+    }
+    double mean_g = sum_g / (double)count;
+    for (size_t k = 0; k < count; k++) {
+        double value_g = olc[k].status == CP_OLC_VALUE ? olc[k].olc_g : 0.0;
+        square_g2 += (value_g - mean_g) * (value_g - mean_g);
+    }
+    return sqrt(square_g2 / (double)(count - 1));
+}

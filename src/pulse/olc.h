@@ -43,4 +43,8 @@ const char *cp_olc_status_text(cp_olc_status status);
  * velocity to at most 0.5 s. */
 cp_olc cp_olc_from_velocity(const double *vx_m_s, size_t count, double interval_s);
 
+/* Standard deviation of several OLC of one crash, g; a left-censored one counts as 0 g. NAN for
+ * fewer than two, or where one has failed. */
+double cp_olc_sd(const cp_olc *olc, size_t count);
+
 #endif

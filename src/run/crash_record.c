@@ -83,7 +83,7 @@ static cp_status fill_vehicle(const cp_crash_facts *facts, const cp_impact_names
     if (names->had_crashed[0] || names->had_crashed[1])
         vehicle->outside |= CP_OUTSIDE_DAMAGED;
     vehicle->severity = NO_SEVERITY;
-    vehicle->crush_m = NAN;
+    vehicle->crush_m = vehicle->absorbed_j = vehicle->ees_m_s = vehicle->olc_sd_g = NAN;
     return CP_OK;
 }
 
@@ -115,12 +115,65 @@ static cp_status simulate(const cp_stand_in cars[2], const cp_crash_configuratio
         for (int role = 0; role < 2; role++) {
             row->vehicle[role].severity = result.severity[role];
             row->vehicle[role].crush_m = result.crush_m[role];
+            row->vehicle[role].absorbed_j = result.whole[role].absorbed_j;
+            row->vehicle[role].ees_m_s = result.whole[role].ees_m_s;
         }
         row->separation_s = result.separation_s;
         row->t_common_s = result.t_common_s;
         row->shift_m = result.shift_m;
     }
     cp_crash_result_destroy(&result);
+    return status;
+}
+
+// OLC by one parameter set of the ensembles, for both cars; a car without an ensemble stays as it
+// is.
+static cp_status simulate_member(const cp_stand_in cars[2],
+                                 const cp_crash_configuration *configuration, size_t number,
+                                 cp_crash_row *row, cp_error *error)
+{
+    cp_vehicle_model model[2];
+    for (int role = 0; role < 2; role++) {
+        const cp_vehicle_model *own = &cars[role].model;
+        model[role] =
+            own->member_count > 0 ? cp_vehicle_model_member(own, number % own->member_count) : *own;
+    }
+    cp_crash_options options = cp_crash_options_default();
+    options.until_olc = true;
+    cp_crash_result result = {0};
+    cp_error failure = {0};
+    cp_status status =
+        cp_crash_simulate(&model[0], &model[1], configuration, &options, &result, &failure);
+    if (status == CP_NO_MEMORY)
+        return cp_fail_memory(error, "crash simulation");
+    bool failed = status != CP_OK || !result.touched;
+    for (int role = 0; role < 2; role++) {
+        cp_crash_vehicle_row *vehicle = &row->vehicle[role];
+        if (number < vehicle->member_count)
+            vehicle->member[number] = failed ? NO_SEVERITY.olc : result.severity[role].olc;
+    }
+    cp_crash_result_destroy(&result);
+    return CP_OK;
+}
+
+// What the fits of the two models leave open: OLC of frontally struck cars by every parameter set.
+static cp_status simulate_ensemble(const cp_stand_in cars[2],
+                                   const cp_crash_configuration *configuration, cp_crash_row *row,
+                                   cp_error *error)
+{
+    size_t count = 0;
+    for (int role = 0; role < 2; role++) {
+        if (configuration->side[role] == CP_SIDE_FRONT)
+            row->vehicle[role].member_count = cars[role].model.member_count;
+        if (row->vehicle[role].member_count > count)
+            count = row->vehicle[role].member_count;
+    }
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < count; k++)
+        status = simulate_member(cars, configuration, k, row, error);
+    for (int role = 0; status == CP_OK && role < 2; role++)
+        row->vehicle[role].olc_sd_g =
+            cp_olc_sd(row->vehicle[role].member, row->vehicle[role].member_count);
     return status;
 }
 
@@ -148,7 +201,7 @@ static cp_status simulate_if_possible(const cp_crash_facts *facts, const cp_impa
     if (status == CP_NO_MEMORY)
         return cp_fail_memory(error, "crash simulation");
     if (status == CP_OK)
-        return CP_OK;
+        return simulate_ensemble(cars, configuration, row, error);
     cp_log_warning("crash of %s and %s at %.2f s cannot be simulated: %s", names->sumo_id[0],
                    names->sumo_id[1], facts->time_s, failure.text);
     for (int role = 0; role < 2; role++) {

@@ -100,7 +100,7 @@ void cp_counterfactual_rows_destroy(cp_counterfactual_rows *rows)
 /* The statements of one write, and whose rows they write. */
 typedef struct writer {
     int64_t replication_id;
-    cp_statement null_treatment, row, vehicle, pulse, sample;
+    cp_statement null_treatment, row, vehicle, member, pulse, sample;
 } writer;
 
 static int64_t crash_id(const writer *w, size_t crash)
@@ -186,6 +186,11 @@ static cp_status write_vehicle(writer *w, const cp_counterfactual_row *row, int 
     cp_bind_integer(s, 3, cp_hash_row_id(row->variant));
     cp_bind_crash_vehicle(s, vehicle, validity);
     cp_status status = cp_statement_run(s, error);
+    cp_bind_integer(&w->member, 1, crash_id(w, row->crash));
+    cp_bind_integer(&w->member, 2, cp_hash_row_id(row->variant));
+    cp_bind_text(&w->member, 3, ROLE[role]);
+    if (status == CP_OK)
+        status = cp_write_members(&w->member, 3, vehicle, error);
     if (status != CP_OK || vehicle->pulse == NULL)
         return status;
 
@@ -246,8 +251,13 @@ static cp_status prepare(writer *w, cp_store *store, cp_error *error)
             store, what,
             "INSERT INTO counterfactual_vehicle VALUES (?1, ?3, ?2, ?5, ?6, ?7, ?8, ?9, ?10, ?11, "
             "?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, ?26, ?27, ?28, "
-            "?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37)",
+            "?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40)",
             &w->vehicle, error);
+    if (status == CP_OK)
+        status = cp_statement_prepare(
+            store, what,
+            "INSERT INTO counterfactual_vehicle_member VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &w->member,
+            error);
     if (status == CP_OK)
         status = cp_statement_prepare(
             store, what, "INSERT INTO counterfactual_pulse VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
@@ -271,6 +281,7 @@ cp_status cp_counterfactual_rows_write(cp_store *store, int64_t replication_id,
         status = write_row(&w, &rows->row[k], error);
     cp_statement_finish(&w.sample);
     cp_statement_finish(&w.pulse);
+    cp_statement_finish(&w.member);
     cp_statement_finish(&w.vehicle);
     cp_statement_finish(&w.row);
     cp_statement_finish(&w.null_treatment);

@@ -10,9 +10,14 @@
 
 #define CP_CRASHES_MAX (1 << 14) /* per replication: room in the row id, below 2^53 */
 
-/* Parameters 5 to 37: frontal, the columns from sumo_id to contact_side, validity, severity. The
+/* Parameters 5 to 40: frontal, the columns from sumo_id to contact_side, validity, severity. The
  * text of validity is borrowed until the statement has run. */
 void cp_bind_crash_vehicle(cp_statement *statement, const cp_crash_vehicle_row *vehicle,
                            char validity[CP_VALIDITY_TEXT_SIZE]);
+
+/* One row for every parameter set of the vehicle's ensemble; parameters 1 to key, who it is, are
+ * bound already, and stay. */
+CP_MUST_CHECK cp_status cp_write_members(cp_statement *statement, int key,
+                                         const cp_crash_vehicle_row *vehicle, cp_error *error);
 
 #endif

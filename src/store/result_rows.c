@@ -167,6 +167,9 @@ static void bind_severity(cp_statement *s, const cp_crash_vehicle_row *vehicle)
     cp_bind_real(s, 35, severity->yaw_change_rad_s);
     cp_bind_real(s, 36, vehicle->crush_m);
     cp_bind_real(s, 37, severity->end_s);
+    cp_bind_real(s, 38, vehicle->absorbed_j);
+    cp_bind_real(s, 39, vehicle->ees_m_s);
+    cp_bind_real(s, 40, vehicle->olc_sd_g);
 }
 
 void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_vehicle_row *vehicle,
@@ -206,6 +209,29 @@ static cp_status write_pulse(cp_statement *s, const cp_result_rows *rows, size_t
     return cp_statement_run(s, error);
 }
 
+// OLC by every parameter set, parameters 1 to key being bound already.
+cp_status cp_write_members(cp_statement *s, int key, const cp_crash_vehicle_row *vehicle,
+                           cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t m = 0; status == CP_OK && m < vehicle->member_count; m++) {
+        const cp_olc *olc = &vehicle->member[m];
+        cp_bind_integer(s, key + 1, (int64_t)m);
+        cp_bind_real(s, key + 2, olc->status == CP_OLC_VALUE ? olc->olc_g : NAN);
+        cp_bind_text(s, key + 3, cp_olc_status_text(olc->status));
+        status = cp_statement_run(s, error);
+    }
+    return status;
+}
+
+static cp_status write_members(cp_statement *s, const cp_result_rows *rows, size_t number, int role,
+                               cp_error *error)
+{
+    cp_bind_integer(s, 1, rows->replication_id * CP_CRASHES_MAX + (int64_t)number);
+    cp_bind_text(s, 2, ROLE[role]);
+    return cp_write_members(s, 2, &rows->crash[number].vehicle[role], error);
+}
+
 static cp_status write_history(cp_statement *s, const cp_result_rows *rows, size_t number,
                                cp_error *error)
 {
@@ -230,7 +256,7 @@ static cp_status write_history(cp_statement *s, const cp_result_rows *rows, size
 
 static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_error *error)
 {
-    cp_statement crash = {0}, vehicle = {0}, pulse = {0}, history = {0};
+    cp_statement crash = {0}, vehicle = {0}, member = {0}, pulse = {0}, history = {0};
     if (rows->crash_count > CP_CRASHES_MAX)
         return cp_fail(error, CP_STORE_FAILED, "replication %lld has more than %d crashes",
                        (long long)rows->replication_id, CP_CRASHES_MAX);
@@ -246,9 +272,14 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
             store, "writing a vehicle of a crash",
             "INSERT INTO crash_vehicle SELECT ?1, ?2, scenario_id, variant_id, ?4, ?5, ?6, ?7, ?8, "
             "?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, "
-            "?26, ?27, ?28, ?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37 FROM replication "
+            "?26, ?27, ?28, ?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40 FROM "
+            "replication "
             "WHERE id = ?3",
             &vehicle, error);
+    if (status == CP_OK)
+        status = cp_statement_prepare(
+            store, "writing an OLC of an ensemble",
+            "INSERT INTO crash_vehicle_member VALUES (?1, ?2, ?3, ?4, ?5)", &member, error);
     if (status == CP_OK)
         status = cp_statement_prepare(store, "writing a pulse",
                                       "INSERT INTO pulse VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &pulse,
@@ -264,6 +295,8 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
         for (int role = 0; status == CP_OK && role < 2; role++) {
             status = write_vehicle(&vehicle, rows, k, role, error);
             if (status == CP_OK)
+                status = write_members(&member, rows, k, role, error);
+            if (status == CP_OK)
                 status = write_pulse(&pulse, rows, k, role, error);
         }
         if (status == CP_OK)
@@ -271,6 +304,7 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
     }
     cp_statement_finish(&history);
     cp_statement_finish(&pulse);
+    cp_statement_finish(&member);
     cp_statement_finish(&vehicle);
     cp_statement_finish(&crash);
     return status;

@@ -28,8 +28,13 @@ typedef struct cp_crash_vehicle_row {
     cp_contact_side side;
     unsigned outside;     /* validity set, 0 = inside */
     cp_severity severity; /* with the OLC status that holds; NAN where there is no value */
-    double crush_m;       /* NAN when the simulation failed */
-    void *pulse;          /* encoded record; NULL when the simulation failed */
+    double crush_m;       /* NAN when the simulation failed, as the next two */
+    double absorbed_j;
+    double ees_m_s;
+    double olc_sd_g;                /* over the ensemble of its model; NAN without one */
+    size_t member_count;            /* 0: no ensemble, or not frontal */
+    cp_olc member[CP_ENSEMBLE_MAX]; /* OLC by every parameter set of it */
+    void *pulse;                    /* encoded record; NULL when the simulation failed */
     size_t pulse_size;
     size_t sample_count;
     double sample_interval_s;

@@ -56,10 +56,11 @@ static void energy_is_accounted_for(void **state)
         cp_crash_result result = simulate(&crash, &STANDARD);
         const cp_crash_energy *e = &result.energy;
         double sum_j = e->kinetic_j + e->elastic_j + e->plastic_j + e->friction_j +
-                       e->contact_damping_j + e->joint_damping_j;
+                       e->contact_damping_j + e->rate_j + e->mount_damping_j;
         assert_near(sum_j, e->start_j, 0.01 * e->start_j);
         assert_true(e->highest_mechanical_j <= 1.01 * e->start_j);
-        assert_true(e->plastic_j >= 0.0 && e->friction_j >= 0.0 && e->joint_damping_j >= 0.0);
+        assert_true(e->plastic_j >= 0.0 && e->friction_j >= 0.0 && e->rate_j >= 0.0 &&
+                    e->mount_damping_j >= 0.0);
         cp_crash_result_destroy(&result);
     }
 }
@@ -168,11 +169,35 @@ static void the_lighter_car_changes_velocity_more(void **state)
     cp_crash_configuration meeting =
         crash_builder_configuration(&light, &heavy, 50.0, 50.0, 0.0, 0.0);
     cp_crash_result result = crash_builder_simulate(&light, &heavy, &meeting, &STANDARD);
-    // Momentum ratio, to what the parts still swinging inside the cars carry.
     double ratio = result.severity[0].delta_v_m_s / result.severity[1].delta_v_m_s;
-    assert_near(ratio, heavy.mass_kg / light.mass_kg, 0.05);
+    assert_near(ratio, heavy.mass_kg / light.mass_kg, 1e-9);
     assert_true(result.severity[0].olc.olc_g > result.severity[1].olc.olc_g);
     cp_crash_result_destroy(&result);
+}
+
+// Delta-v is of whole cars: m dv is the same for both, whatever still swings, and what each
+// absorbed adds up to what the crash took.
+static void delta_v_is_by_momentum_and_energy_is_shared_out(void **state)
+{
+    (void)state;
+    for (uint64_t k = 1; k < 30; k += 2) {
+        random_crash crash = draw_crash(k);
+        cp_crash_result result = simulate(&crash, &STANDARD);
+        double momentum[2] = {crash.own.mass_kg * result.severity[0].delta_v_m_s,
+                              crash.opponent.mass_kg * result.severity[1].delta_v_m_s};
+        assert_near(momentum[0], momentum[1], 1e-9 * momentum[0]);
+        double absorbed_j = 0.0;
+        for (int c = 0; c < 2; c++) {
+            const cp_crash_whole *whole = &result.whole[c];
+            double mass_kg = c == 0 ? crash.own.mass_kg : crash.opponent.mass_kg;
+            assert_near(whole->ees_m_s, sqrt(2.0 * whole->absorbed_j / mass_kg), 1e-9);
+            assert_near(result.severity[c].delta_v_m_s, cp_vec2_length(whole->delta_v_m_s), 1e-12);
+            absorbed_j += whole->absorbed_j;
+        }
+        const cp_crash_energy *e = &result.energy;
+        assert_near(absorbed_j, e->start_j - e->kinetic_j - e->elastic_j, 0.01 * e->start_j);
+        cp_crash_result_destroy(&result);
+    }
 }
 
 static void half_the_step_moves_olc_little(void **state)
@@ -327,6 +352,7 @@ int main(void)
         cmocka_unit_test(equal_cars_meet_as_at_a_wall),
         cmocka_unit_test(a_common_velocity_changes_nothing_but_positions),
         cmocka_unit_test(the_lighter_car_changes_velocity_more),
+        cmocka_unit_test(delta_v_is_by_momentum_and_energy_is_shared_out),
         cmocka_unit_test(half_the_step_moves_olc_little),
         cmocka_unit_test(olc_from_the_samples_is_the_same),
         cmocka_unit_test(same_inputs_give_the_same_bits_on_any_thread),

@@ -37,6 +37,56 @@ static void expect_refusal(const char *text, const char *place, const char *word
         fail_msg("expected '%s' and '%s' in: %s", place, words, error.text);
 }
 
+static void an_ensemble_is_read_set_by_set(void **state)
+{
+    (void)state;
+    cp_vehicle_model model;
+    cp_error error = {0};
+    cp_status status = load_text("vehicle: x\nparameters:\n  - {name: friction_1, value: 0.4}\n"
+                                 "ensemble:\n  - {name: friction_1, values: [0.35, 0.5]}\n"
+                                 "  - {name: cell_edge_kn, values: [150, 190]}\n",
+                                 &model, &error);
+    if (status != CP_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(model.member_count, 2);
+    cp_vehicle_model second = cp_vehicle_model_member(&model, 1);
+    assert_near(second.friction_1, 0.5, 0.0);
+    assert_near(second.cell_edge_kn, 190.0, 0.0);
+    assert_near(second.mass_kg, model.mass_kg, 0.0);
+    assert_near(model.friction_1, 0.4, 0.0);
+
+    // A stretched outline stays stretched.
+    cp_vehicle_model covering = cp_vehicle_model_cover(&model, 6.0, 2.0);
+    assert_near(cp_vehicle_model_member(&covering, 0).length_m, 6.0, 0.0);
+
+    expect_refusal("vehicle: x\nparameters: []\nensemble:\n  - {name: friction_1, values: [1, 1]}\n"
+                   "  - {name: cell_kn, values: [500]}\n",
+                   ":5: ensemble[1].values", "as many values as the first parameter's, 2, found 1");
+    expect_refusal(
+        "vehicle: x\nparameters: []\nensemble:\n  - {name: friction_1, values: [0.4, 7]}\n",
+        "ensemble[0].values[1]", "between 0 and 1.5");
+    expect_refusal("vehicle: x\nparameters: []\nensemble:\n  - {name: mass_kg, values: [500]}\n",
+                   "set 1 of the ensemble", "mass_kg must leave");
+}
+
+// A file made for an earlier version of the model is read; what it no longer has is not used.
+static void former_parameters_are_read_and_not_used(void **state)
+{
+    (void)state;
+    cp_vehicle_model model;
+    cp_error error = {0};
+    cp_status status = load_text("vehicle: x\nparameters:\n"
+                                 "  - {name: member_damping_kn_s_m, value: 2.7, unit: kN s/m}\n"
+                                 "  - {name: longitudinal_collapse_begin_kn, value: 100}\n"
+                                 "  - {name: longitudinal_collapse_end_kn, value: 300}\n"
+                                 "  - {name: crush_rate_s_m, value: 0.02}\n",
+                                 &model, &error);
+    if (status != CP_OK)
+        fail_msg("%s", error.text);
+    assert_near(model.longitudinal_collapse_middle_kn, 200.0, 1e-12);
+    assert_near(model.strain_rate_gain_1, cp_vehicle_model_default().strain_rate_gain_1, 0.0);
+}
+
 static void the_default_is_valid(void **state)
 {
     (void)state;
@@ -130,6 +180,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_default_is_valid),
+        cmocka_unit_test(an_ensemble_is_read_set_by_set),
+        cmocka_unit_test(former_parameters_are_read_and_not_used),
         cmocka_unit_test(a_file_sets_what_it_names),
         cmocka_unit_test(every_error_names_line_and_field),
         cmocka_unit_test(fields_must_fit_each_other),

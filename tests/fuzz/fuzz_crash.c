@@ -115,7 +115,7 @@ static bool all_finite(const cp_crash_result *result)
                     return false;
     const cp_crash_energy *e = &result->energy;
     return isfinite(e->kinetic_j + e->elastic_j + e->plastic_j + e->friction_j +
-                    e->contact_damping_j + e->joint_damping_j) &&
+                    e->contact_damping_j + e->rate_j + e->mount_damping_j) &&
            isfinite(e->highest_mechanical_j) && e->highest_mechanical_j > 0.0;
 }
 

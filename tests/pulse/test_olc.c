@@ -198,6 +198,20 @@ static void statuses_have_their_database_texts(void **state)
     assert_string_equal(cp_olc_status_text(CP_OLC_SIMULATION_FAILED), "simulation_failed");
 }
 
+static void the_scatter_of_several_olc(void **state)
+{
+    (void)state;
+    cp_olc olc[3] = {{CP_OLC_VALUE, 10.0, 0.0, 0.0},
+                     {CP_OLC_VALUE, 13.0, 0.0, 0.0},
+                     {CP_OLC_VALUE, 16.0, 0.0, 0.0}};
+    assert_near(cp_olc_sd(olc, 3), 3.0, 1e-12);
+    olc[0] = (cp_olc){CP_OLC_NO_DECELERATION, NAN, NAN, NAN};
+    assert_near(cp_olc_sd(olc, 2), 13.0 / sqrt(2.0), 1e-12);
+    olc[1].status = CP_OLC_SIMULATION_FAILED;
+    assert_true(isnan(cp_olc_sd(olc, 3)));
+    assert_true(isnan(cp_olc_sd(olc, 1)));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -212,6 +226,7 @@ int main(void)
         cmocka_unit_test(a_broken_record_is_a_failed_simulation),
         cmocka_unit_test(the_defining_equations_hold_on_random_pulses),
         cmocka_unit_test(statuses_have_their_database_texts),
+        cmocka_unit_test(the_scatter_of_several_olc),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: GPL-3.0-or-later
--- Version 10: delta-v is that of the whole car (its momentum over its mass) and no longer that of the
+-- Version 11: delta-v is that of the whole car (its momentum over its mass) and no longer that of the
 -- passenger cell alone; the energy a car absorbed; what the fit of its model leaves open.
 
 -- NULL in rows of earlier versions, whose delta_v_m_s is of the passenger cell's pulse.

@@ -16,6 +16,11 @@ cp_estimate cp_describe_quantile(const cp_sample *sample, double p)
     return (cp_estimate){CP_EXACTLY, quantile};
 }
 
+cp_estimate cp_estimate_of(double value)
+{
+    return (cp_estimate){isnan(value) ? CP_NO_VALUE : CP_EXACTLY, value};
+}
+
 cp_estimate cp_estimate_difference(cp_estimate a, cp_estimate b)
 {
     // Two one-sided figures, or one that is missing, leave the difference open to both sides.

@@ -16,6 +16,9 @@ typedef struct cp_estimate {
  * observations, CP_NO_VALUE when there is no value at all. */
 cp_estimate cp_describe_quantile(const cp_sample *sample, double p);
 
+/* A value known exactly; CP_NO_VALUE for NAN. */
+cp_estimate cp_estimate_of(double value);
+
 /* b - a: one-sided when one is, CP_NO_VALUE when both are (or there is none). */
 cp_estimate cp_estimate_difference(cp_estimate a, cp_estimate b);
 

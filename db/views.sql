@@ -125,7 +125,47 @@ LEFT JOIN vehicles AS x ON x.variant_id = v.id
 LEFT JOIN counted AS k ON k.variant_id = v.id
 ORDER BY v.number;
 
--- The same for each scenario and variant.
+-- Median OLC of each variant by every parameter set (member) of the vehicle models' ensembles, sets
+-- that every vehicle with an ensemble has. n: vehicles with an OLC by the set, left-censored ones
+-- included; with_sets: of these whose model has an ensemble, the others keep their own OLC in every
+-- set. The median is NULL where it is left-censored. The scatter of the medians over the sets is the
+-- part of the model: a set that is wrong is wrong for all crashes.
+DROP VIEW IF EXISTS olc_by_variant_member;
+CREATE VIEW olc_by_variant_member AS
+WITH sets AS (
+    SELECT count(*) AS n, max(member) + 1 AS numbered FROM crash_vehicle_member
+    GROUP BY crash_id, role
+    UNION ALL
+    SELECT count(*), max(member) + 1 FROM counterfactual_vehicle_member
+    GROUP BY crash_id, variant_id, role
+), common AS (
+    SELECT DISTINCT member FROM crash_vehicle_member
+    WHERE member < (SELECT min(CASE WHEN n = numbered THEN n ELSE 0 END) FROM sets)
+), by_set AS (
+    SELECT w.variant_id, s.member, m.member IS NOT NULL AS has_set,
+           CASE WHEN m.member IS NULL THEN w.olc_g ELSE m.olc_g END AS olc_g
+    FROM crash_vehicle AS w CROSS JOIN common AS s
+    LEFT JOIN crash_vehicle_member AS m
+           ON m.crash_id = w.crash_id AND m.role = w.role AND m.member = s.member
+    WHERE w.olc_status IN ('value', 'no_deceleration', 'beyond_0_5_s')
+      AND coalesce(m.olc_status, '') <> 'simulation_failed'
+), placed AS (
+    SELECT *, row_number() OVER (PARTITION BY variant_id, member ORDER BY olc_g) AS place,
+           count(*) OVER (PARTITION BY variant_id, member) AS n,
+           sum(has_set) OVER (PARTITION BY variant_id, member) AS with_sets
+    FROM by_set
+)
+SELECT v.name AS variant, v.id AS variant_id, v.is_baseline AS is_baseline, p.member AS member,
+       p.n AS n, p.with_sets AS with_sets,
+       -- the middle one or the mean of the two in the middle; no value if either is censored
+       CASE WHEN count(p.olc_g) = count(*) THEN avg(p.olc_g) END AS olc_median_g
+FROM placed AS p
+JOIN variant AS v ON v.id = p.variant_id
+WHERE p.place IN ((p.n + 1) / 2, p.n / 2 + 1)
+GROUP BY v.id, p.member
+ORDER BY v.number, p.member;
+
+-- What olc_by_variant shows, for each scenario and variant.
 DROP VIEW IF EXISTS olc_by_scenario;
 CREATE VIEW olc_by_scenario AS
 WITH vehicles AS (

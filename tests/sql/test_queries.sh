@@ -13,7 +13,9 @@ mkdir -p "$seen"
 # The small study with pulses in it.
 cp "$db" "$seen/study.db"
 db=$seen/study.db
-sqlite3 -batch -bail "$db" <"$(dirname "$0")/small_study_pulses.sql"
+for name in small_study_pulses small_members; do
+    sqlite3 -batch -bail "$db" <"$(dirname "$0")/$name.sql"
+done
 # With sanitizers their runtime has to be there before the stock shell's first allocation.
 shell() {
     LD_PRELOAD="${CRASHPULSE_PRELOAD:-}" ASAN_OPTIONS=detect_leaks=0 \

@@ -21,10 +21,11 @@ typedef struct arguments {
     const char *where;
     double above[CP_EXCEEDED_COUNT]; /* OLC in g, delta-v in m/s */
     bool no_store;
+    bool model_uncertainty;
     cp_format format;
 } arguments;
 
-enum { KEY_NO_STORE = 256, KEY_ABOVE_OLC, KEY_ABOVE_DELTA_V };
+enum { KEY_NO_STORE = 256, KEY_ABOVE_OLC, KEY_ABOVE_DELTA_V, KEY_MODEL_UNCERTAINTY };
 
 static const struct argp_option OPTIONS[] = {
     {"baseline", 'b', "VARIANT", 0, "compare with this variant (default: the study's baseline)", 0},
@@ -39,6 +40,10 @@ static const struct argp_option OPTIONS[] = {
     {"above-olc", KEY_ABOVE_OLC, "G", 0,
      "how often crashes above this OLC happen, g (default 15); the report has the curve", 0},
     {"above-delta-v", KEY_ABOVE_DELTA_V, "KM/H", 0, "the same above this delta-v (default 30)", 0},
+    {"model-uncertainty", KEY_MODEL_UNCERTAINTY, NULL, 0,
+     "also by every parameter set of the vehicle models' ensembles: what of the uncertainty of OLC "
+     "comes from replications and what from the model",
+     0},
     {"no-store", KEY_NO_STORE, NULL, 0, "leave the tables comparison and comparison_figure alone",
      0},
     {0},
@@ -73,6 +78,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_NO_STORE:
         a->no_store = true;
         return 0;
+    case KEY_MODEL_UNCERTAINTY:
+        a->model_uncertainty = true;
+        return 0;
     case ARGP_KEY_ARG:
         if (a->db_path)
             argp_error(state, "one database at a time, found '%s' too", argument);
@@ -104,7 +112,11 @@ static const struct argp ARGP = {
            "compared at the same mix of scenarios, by a test that holds when one variant crashes "
            "more often; where crashes are too few for an interval or a test the reason stands in "
            "its place. What lies outside the surrogate's validated range counts with its "
-           "extrapolated severity, and as unknown in the bounds. Rates are conditional on the "
+           "extrapolated severity, and as unknown in the bounds. "
+           "With --model-uncertainty all crashes count by one parameter set after the other, as a "
+           "set that is wrong is wrong for all of them; the half-width over the sets (Student's t) "
+           "and that of the replications are combined as the root of the sum of their squares. "
+           "Rates are conditional on the "
            "study's driver errors. OLC describes "
            "the crash pulse of a car; injuries come from the table risk_function, which is yours "
            "to edit. The figures are also written to the tables comparison and "
@@ -127,6 +139,7 @@ typedef struct job {
     cp_comparison *comparison; /* one a group */
     char **answer;
     cp_comparison_options options;
+    cp_model_ensemble ensemble;
 } job;
 
 static void job_destroy(job *j)
@@ -141,8 +154,22 @@ static void job_destroy(job *j)
     free(j->answer);
     cp_grouping_destroy(&j->grouping);
     cp_network_backgrounds_destroy(&j->backgrounds);
+    cp_model_ensemble_destroy(&j->ensemble);
     cp_study_data_destroy(&j->data);
     cp_store_close(j->store);
+}
+
+static cp_status read_ensemble(job *j, cp_error *error)
+{
+    cp_status status = cp_model_ensemble_read(j->store, &j->data, &j->ensemble, error);
+    if (status == CP_OK && j->ensemble.count < CP_MODEL_SETS_MIN)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "%s: its crashes have %zu parameter sets in common, --model-uncertainty "
+                       "needs %d at least; a vehicle file gets an ensemble by 'ensemble:' of its "
+                       "fit file (crashpulse calibrate), 'crashpulse run' then simulates by each",
+                       j->a.db_path, j->ensemble.count, CP_MODEL_SETS_MIN);
+    j->options.ensemble = &j->ensemble;
+    return status;
 }
 
 static cp_status compare_groups(job *j, size_t baseline, cp_error *error)
@@ -261,6 +288,8 @@ cp_status cmd_compare(int argc, char **argv, cp_error *error)
         status = cp_study_data_read(j.store, &j.data, error);
     if (status == CP_OK)
         status = cp_study_data_variant(&j.data, j.a.baseline, &baseline, error);
+    if (status == CP_OK && j.a.model_uncertainty)
+        status = read_ensemble(&j, error);
     if (status == CP_OK && j.data.unfinished > 0)
         cp_log_warning("replications that are not finished and not counted: %zu",
                        j.data.unfinished);

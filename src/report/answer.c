@@ -114,6 +114,57 @@ static void write_median(FILE *out, cp_estimate median)
         fprintf(out, "%s g", cp_estimate_text(median, 1, text));
 }
 
+// What of a figure's uncertainty is the traffic's and what the crash model's. unit: " g" or "".
+static void write_model_part(FILE *out, const char *what, const char *unit, int digits,
+                             const cp_model_part *p, const cp_comparison *comparison)
+{
+    char text[CP_ESTIMATE_TEXT_SIZE];
+    if (p->sets == 0)
+        return;
+    if (p->status != CP_INTERVAL_VALUE) {
+        fprintf(out,
+                "What the %zu parameter sets of the vehicle models say of %s is not known (%s)",
+                p->sets, what, cp_interval_status_text(p->status));
+    } else if (p->combined.status == CP_INTERVAL_VALUE) {
+        fprintf(out, "With the uncertainty of the crash model %s is %s%s (", what,
+                cp_estimate_text(p->estimate, digits, text), unit);
+        write_interval(out, p->combined, digits, "interval");
+        fputs("): from replications ", out);
+        write_interval(out, p->replications, digits, "interval");
+        fprintf(
+            out,
+            ", from the model’s ensemble of %zu parameter sets ±%.*f%s, combined as the root of "
+            "the sum of squares",
+            p->sets, digits, p->half_width, unit);
+    } else {
+        fprintf(
+            out,
+            "Of the uncertainty of %s, ±%.*f%s (95 %%) is the crash model’s, by its ensemble of "
+            "%zu parameter sets; replications give no interval (%s)",
+            what, digits, p->half_width, unit, p->sets,
+            cp_interval_status_text(p->combined.status));
+    }
+    size_t without = 0;
+    for (size_t k = 0; k < comparison->variant_count; k++)
+        without += comparison->variant[k].without_sets;
+    if (without > 0)
+        fprintf(out, "; %zu vehicle%s of models without such sets count as certain", without,
+                without == 1 ? "" : "s");
+    fputs(".\n", out);
+}
+
+// Of the difference of medians; where replications are too few for its interval, of Cliff's delta.
+static void write_model_of_contrast(FILE *out, const cp_contrast_figures *c,
+                                    const cp_comparison *comparison)
+{
+    if (c->median_model.combined.status != CP_INTERVAL_VALUE &&
+        c->delta_model.combined.status == CP_INTERVAL_VALUE)
+        write_model_part(out, "Cliff’s δ", "", 2, &c->delta_model, comparison);
+    else
+        write_model_part(out, "the difference of the medians", " g", 1, &c->median_model,
+                         comparison);
+}
+
 static void write_severity(FILE *out, const cp_study_data *data, const cp_comparison *comparison,
                            const cp_contrast_figures *c)
 {
@@ -162,6 +213,7 @@ static void write_severity(FILE *out, const cp_study_data *data, const cp_compar
                     name[g]);
     }
     fputs(").\n", out);
+    write_model_of_contrast(out, c, comparison);
 }
 
 static void write_contrast(FILE *out, const cp_study_data *data, const cp_comparison *comparison,
@@ -183,7 +235,8 @@ static void write_contrast(FILE *out, const cp_study_data *data, const cp_compar
 }
 
 // What a treatment made of the baseline's crashes: outcomes first, then severity over all of them.
-static void write_pairs(FILE *out, const cp_study_data *data, const cp_counterfactual_figures *c)
+static void write_pairs(FILE *out, const cp_study_data *data, const cp_comparison *comparison,
+                        const cp_counterfactual_figures *c)
 {
     double valid = c->valid ? (double)c->valid : NAN, percent = 100.0 / valid;
     const cp_paired *olc = &c->olc_g[CP_PAIRED_ALL];
@@ -223,6 +276,7 @@ static void write_pairs(FILE *out, const cp_study_data *data, const cp_counterfa
         fprintf(out, "; %zu more could not be judged", c->crashes - c->valid);
     fprintf(out, ". Of the %zu valid ones inside the validated range with %s, %zu were avoided.\n",
             c->inside_valid, "the baseline", c->inside_outcome[CP_OUTCOME_AVOIDED]);
+    write_model_part(out, "the change of OLC", " g", 1, &c->olc_model[CP_PAIRED_ALL], comparison);
 }
 
 static void write_counts(FILE *out, const cp_study_data *data, const cp_comparison *comparison)
@@ -307,7 +361,7 @@ cp_status cp_comparison_answer(const cp_study_data *data, const cp_comparison *c
     for (size_t k = 0; k < comparison->contrast_count; k++)
         write_contrast(out, data, comparison, &comparison->contrast[k]);
     for (size_t k = 0; k < comparison->counterfactual_count; k++)
-        write_pairs(out, data, &comparison->counterfactual[k]);
+        write_pairs(out, data, comparison, &comparison->counterfactual[k]);
     // A paragraph each, then one on what it all rests on.
     fputs("In all: ", out);
     write_counts(out, data, comparison);

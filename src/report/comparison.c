@@ -2,6 +2,7 @@
 #include "report/comparison.h"
 
 #include "report/counterfactual.h"
+#include "report/model_uncertainty.h"
 #include "report/slice_sample.h"
 
 #include <math.h>
@@ -204,6 +205,9 @@ static cp_status figure_variant(const cp_study_data *data, cp_slice slice,
     if (status == CP_OK)
         status = describe(data, &set, slice, &resampling, figures, error);
     if (status == CP_OK)
+        status = cp_model_uncertainty_variant(data, options->ensemble, &set, slice, &resampling,
+                                              figures, error);
+    if (status == CP_OK)
         status = figure_injuries(data, &set, slice, figures, error);
     if (status == CP_OK)
         status = cp_exceedance_figure(data, &set, slice, options, figures, error);
@@ -360,6 +364,9 @@ static cp_status contrast_variant(const cp_study_data *data, const cp_comparison
     status = contrast_rates(set, &resampling, options->permutations, figures, error);
     if (status == CP_OK)
         status = contrast_severity(data, set, slice, &resampling, figures, error);
+    if (status == CP_OK)
+        status = cp_model_uncertainty_contrast(data, options->ensemble, set, slice, &resampling,
+                                               figures, error);
     if (status == CP_OK)
         status = bound_severity(data, set, slice, &resampling, figures, error);
     if (status == CP_OK)

@@ -3,10 +3,12 @@
 #define REPORT_COMPARISON_H
 
 #include "report/exceedance.h"
+#include "report/model_ensemble.h"
 #include "report/study_data.h"
 #include "stats/band.h"
 #include "stats/contrast.h"
 #include "stats/describe.h"
+#include "stats/model_part.h"
 #include "stats/paired.h"
 #include "stats/precision.h"
 #include "stats/rates.h"
@@ -93,6 +95,8 @@ typedef struct cp_variant_figures {
     cp_precision olc_mean_precision[CP_SCOPE_COUNT]; /* target +-10 % */
     cp_band olc_band[CP_SCOPE_COUNT];                /* of the distribution function */
     cp_injury_figures *injury[CP_SCOPE_COUNT];       /* one a risk function */
+    cp_model_part olc_median_model;                  /* of all; sets 0 without an ensemble */
+    size_t without_sets; /* vehicles of that median whose model has none */
 } cp_variant_figures;
 
 /* A treatment against the baseline; differences are treatment minus baseline. */
@@ -114,6 +118,8 @@ typedef struct cp_contrast_figures {
     double distance_p_holm[CP_QUANTITIES_COMPARED];
     cp_superiority olc_bound[2]; /* Cliff's delta of OLC, least and most, with every severity
                                     outside validity unknown */
+    cp_model_part median_model;  /* of the difference of OLC medians; sets 0 without an ensemble */
+    cp_model_part delta_model;   /* likewise of Cliff's delta of OLC */
     cp_benefit_figures *benefit; /* one a risk function */
 } cp_contrast_figures;
 
@@ -137,6 +143,7 @@ typedef struct cp_counterfactual_figures {
     double new_crashes;                        /* between others, over the valid pairs */
     cp_paired olc_g[CP_PAIRED_COUNT];
     cp_paired closing_speed_m_s[CP_PAIRED_COUNT];
+    cp_model_part olc_model[CP_PAIRED_COUNT]; /* of Hodges-Lehmann's change; sets 0 without */
     double p_holm[CP_PAIRED_COUNT];       /* of the signed-rank tests of OLC, for every p printed */
     double speed_p_holm[CP_PAIRED_COUNT]; /* likewise of closing speed */
     cp_benefit_figures *benefit;          /* one a risk function, both drivers, all valid pairs */
@@ -168,9 +175,11 @@ cp_interval cp_rate_interval(const cp_variant_figures *figures);
 cp_interval cp_rate_ratio_interval(const cp_contrast_figures *figures);
 
 typedef struct cp_comparison_options {
-    size_t repetitions;              /* of the bootstrap, default 2000 */
-    size_t permutations;             /* of the tests, default 1999 */
-    double above[CP_EXCEEDED_COUNT]; /* headline x of crashes above a severity, >= 0, SI */
+    size_t repetitions;                /* of the bootstrap, default 2000 */
+    size_t permutations;               /* of the tests, default 1999 */
+    double above[CP_EXCEEDED_COUNT];   /* headline x of crashes above a severity, >= 0, SI */
+    const cp_model_ensemble *ensemble; /* the model's uncertainty by it; NULL (default), or fewer
+                                          than CP_MODEL_SETS_MIN sets: none; borrowed */
 } cp_comparison_options;
 
 cp_comparison_options cp_comparison_options_default(void);

@@ -31,6 +31,16 @@ static json_t *description_json(const cp_description *d)
         estimate_json(d->p90), "p95", estimate_json(d->p95), "max", estimate_json(d->maximum));
 }
 
+static json_t *model_part_json(const cp_model_part *p)
+{
+    return json_pack("{s:I, s:o, s:o, s:s, s:o, s:o, s:o, s:o}", "sets", (json_int_t)p->sets,
+                     "estimate", estimate_json(p->estimate), "replications",
+                     interval_json(p->replications), "status", cp_interval_status_text(p->status),
+                     "sd", cp_number_json(p->sd), "mean", cp_number_json(p->mean),
+                     "model_half_width", cp_number_json(p->half_width), "combined",
+                     interval_json(p->combined));
+}
+
 /* How the quantities are called, in the order of cp_slice_quantity. */
 static const char *const QUANTITY[CP_QUANTITY_COUNT] = {"olc_g", "delta_v_m_s", "closing_speed_m_s",
                                                         "lateral_offset_m", "angle_rad"};
@@ -167,6 +177,10 @@ static json_t *variant_json(const cp_study_data *data, const cp_comparison *comp
         json_object_set_new(object, QUANTITY[q], scopes_json(v, q));
     json_object_set_new(object, "expected_injured_drivers", injuries_json(data, v));
     json_object_set_new(object, "crashes_above", exceedance_json(v));
+    if (v->olc_median_model.sets > 0)
+        json_object_set_new(object, "model_uncertainty",
+                            json_pack("{s:I, s:o}", "without_sets", (json_int_t)v->without_sets,
+                                      "olc_median_g", model_part_json(&v->olc_median_model)));
     return object;
 }
 
@@ -218,6 +232,11 @@ static json_t *contrast_json(const cp_study_data *data, const cp_contrast_figure
                                   superiority_json(&c->olc_bound[1])));
     json_object_set_new(object, "crashes_above", exceedance_ratios_json(c));
     json_object_set_new(object, "injury_benefit", benefits_json(data, c->benefit));
+    if (c->median_model.sets > 0)
+        json_object_set_new(object, "model_uncertainty",
+                            json_pack("{s:o, s:o}", "olc_median_difference_g",
+                                      model_part_json(&c->median_model), "olc_cliffs_delta",
+                                      model_part_json(&c->delta_model)));
     return object;
 }
 
@@ -254,6 +273,9 @@ static json_t *counterfactual_json(const cp_study_data *data, const cp_counterfa
         json_object_set_new(speed, CP_PAIRED_TEXT[which],
                             paired_json(&c->closing_speed_m_s[which], c->speed_p_holm[which]));
     }
+    json_t *model = json_object();
+    for (int which = 0; which < CP_PAIRED_COUNT && c->olc_model[which].sets > 0; which++)
+        json_object_set_new(model, CP_PAIRED_TEXT[which], model_part_json(&c->olc_model[which]));
     json_t *inside = json_object(), *inside_shares = json_object();
     for (int o = 0; o < CP_OUTCOME_NO_OLC; o++) {
         const char *name = cp_outcome_text((cp_outcome)o);
@@ -266,13 +288,17 @@ static json_t *counterfactual_json(const cp_study_data *data, const cp_counterfa
                   "valid", (json_int_t)c->inside_valid, "treated_outside",
                   (json_int_t)c->inside_treated_outside, "outcomes", inside, "shares",
                   inside_shares, "olc_change_g", paired_json(&c->inside_olc_g, NAN));
-    return json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:f, s:o, s:o, s:o, s:o}", "variant",
-                     data->variant[c->variant].name, "crashes", (json_int_t)c->crashes, "valid",
-                     (json_int_t)c->valid, "outcomes", outcomes, "shares", shares,
-                     "outcomes_by_olc", by_olc, "invalid_reasons", reasons, "new_crashes",
-                     c->new_crashes, "olc_change_g", olc, "closing_speed_change_m_s", speed,
-                     "baseline_inside", of_inside, "injury_benefit",
-                     benefits_json(data, c->benefit));
+    json_t *object =
+        json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:f, s:o, s:o, s:o, s:o}", "variant",
+                  data->variant[c->variant].name, "crashes", (json_int_t)c->crashes, "valid",
+                  (json_int_t)c->valid, "outcomes", outcomes, "shares", shares, "outcomes_by_olc",
+                  by_olc, "invalid_reasons", reasons, "new_crashes", c->new_crashes, "olc_change_g",
+                  olc, "closing_speed_change_m_s", speed, "baseline_inside", of_inside,
+                  "injury_benefit", benefits_json(data, c->benefit));
+    if (json_object_size(model) > 0)
+        json_object_set_new(object, "model_uncertainty", json_pack("{s:O}", "olc_change_g", model));
+    json_decref(model);
+    return object;
 }
 
 json_t *cp_comparison_json(const cp_study_data *data, const cp_comparison *comparison)

@@ -13,6 +13,7 @@ typedef struct pairs {
     const cp_replication_set *set; /* of the baseline */
     cp_resampling resampling;
     size_t permutations;
+    const cp_model_ensemble *ensemble; /* may be NULL */
     size_t count;
     const cp_study_pair **pair;
     size_t *cluster; /* of each pair */
@@ -120,13 +121,13 @@ static cp_status figure_shares(const pairs *p, bool of_inside, cp_interval *shar
     return status;
 }
 
-// Treated minus baseline over the valid pairs, or over those that crash again.
-static cp_status figure_severity(const pairs *p, bool olc, int which, bool of_inside,
-                                 cp_paired *paired, cp_error *error)
+// Treated minus baseline over the valid pairs, or over those that crash again. rows: the pairs of
+// the study, or the same by a set of the ensemble.
+static cp_status changes(const pairs *p, const cp_study_pair *rows, bool olc, int which,
+                         bool of_inside, cp_sample *sample, cp_error *error)
 {
     double *difference = calloc(p->count + 1, sizeof *difference);
     size_t *cluster = calloc(p->count + 1, sizeof *cluster);
-    cp_sample sample = {0};
     cp_status status = CP_OK;
     size_t count = 0;
     if (!difference || !cluster) {
@@ -134,7 +135,7 @@ static cp_status figure_severity(const pairs *p, bool olc, int which, bool of_in
         goto done;
     }
     for (size_t k = 0; k < p->count; k++) {
-        const cp_study_pair *pair = p->pair[k];
+        const cp_study_pair *pair = &rows[p->pair[k] - p->data->pair];
         const double *severity = olc ? pair->olc_g : pair->closing_speed_m_s;
         double change = severity[1] - severity[0];
         if (isnan(change) || !(which == CP_PAIRED_ALL ? valid(pair) : crashes_again(pair)) ||
@@ -143,14 +144,48 @@ static cp_status figure_severity(const pairs *p, bool olc, int which, bool of_in
         difference[count] = change;
         cluster[count++] = p->cluster[k];
     }
-    status = cp_sample_create(difference, cluster, count, p->set->count, &sample, error);
-    if (status == CP_OK)
-        status = cp_paired_compare(&sample, &p->resampling, p->permutations, paired, error);
+    status = cp_sample_create(difference, cluster, count, p->set->count, sample, error);
 
 done:
-    cp_sample_destroy(&sample);
     free(difference);
     free(cluster);
+    return status;
+}
+
+static cp_status figure_severity(const pairs *p, bool olc, int which, bool of_inside,
+                                 cp_paired *paired, cp_error *error)
+{
+    cp_sample sample = {0};
+    cp_status status = changes(p, p->data->pair, olc, which, of_inside, &sample, error);
+    if (status == CP_OK)
+        status = cp_paired_compare(&sample, &p->resampling, p->permutations, paired, error);
+    cp_sample_destroy(&sample);
+    return status;
+}
+
+// The model's part of Hodges and Lehmann's change of OLC.
+static cp_status figure_model(const pairs *p, int which, cp_counterfactual_figures *figures,
+                              cp_error *error)
+{
+    const cp_model_ensemble *ensemble = p->ensemble;
+    if (!ensemble || ensemble->count < CP_MODEL_SETS_MIN)
+        return CP_OK;
+    cp_estimate *of_set = calloc(ensemble->count, sizeof *of_set);
+    cp_status status = of_set ? CP_OK : cp_fail_memory(error, "the model's uncertainty");
+    for (size_t m = 0; m < ensemble->count && status == CP_OK; m++) {
+        cp_sample sample = {0};
+        const cp_study_data by_set = cp_model_ensemble_study(ensemble, p->data, m);
+        status = changes(p, by_set.pair, true, which, false, &sample, error);
+        if (status == CP_OK)
+            of_set[m] = cp_estimate_of(cp_paired_hodges_lehmann(&sample, NULL));
+        cp_sample_destroy(&sample);
+    }
+    const cp_paired *own = &figures->olc_g[which];
+    if (status == CP_OK)
+        figures->olc_model[which] =
+            cp_model_part_of(cp_estimate_of(own->hodges_lehmann), own->hodges_lehmann_interval,
+                             of_set, ensemble->count);
+    free(of_set);
     return status;
 }
 
@@ -252,6 +287,8 @@ static cp_status figure_treatment(pairs *p, cp_counterfactual_figures *figures, 
         if (status == CP_OK)
             status =
                 figure_severity(p, false, which, false, &figures->closing_speed_m_s[which], error);
+        if (status == CP_OK)
+            status = figure_model(p, which, figures, error);
     }
     return status == CP_OK ? figure_benefit(p, figures, error) : status;
 }
@@ -293,6 +330,7 @@ cp_status cp_compare_counterfactual(const cp_study_data *data, const cp_comparis
         return status;
     pairs p = {.data = data, .comparison = comparison, .set = &set};
     p.permutations = options->permutations;
+    p.ensemble = options->ensemble;
     p.resampling = cp_resampling_default();
     p.resampling.repetitions = options->repetitions;
     p.resampling.seed = data->seed;

@@ -22,14 +22,9 @@ const char *cp_relation_text(cp_relation relation)
     return RELATION[relation];
 }
 
-static cp_estimate exactly(double value)
-{
-    return (cp_estimate){isnan(value) ? CP_NO_VALUE : CP_EXACTLY, value};
-}
-
 static cp_estimate counted(size_t value)
 {
-    return exactly((double)value);
+    return cp_estimate_of((double)value);
 }
 
 /* Where rows go, and what they have in common. */
@@ -125,7 +120,7 @@ static void add_description(const writer *w, int q, const cp_description *d,
         bool always;
         cp_estimate estimate;
     } rows[] = {
-        {"mean", "  mean", true, d->mean_of_all}, {"sd", "  sd", false, exactly(d->sd)},
+        {"mean", "  mean", true, d->mean_of_all}, {"sd", "  sd", false, cp_estimate_of(d->sd)},
         {"min", "  min", false, d->minimum},      {"q25", "  25 %", false, d->q25},
         {"median", "  median", true, d->median},  {"q75", "  75 %", false, d->q75},
         {"p90", "  90 %", true, d->p90},          {"p95", "  95 %", false, d->p95},
@@ -154,26 +149,26 @@ static void add_rates(const writer *w, const cp_variant_figures *v)
 {
     double share = v->frontal_vehicles ? (double)v->inside / (double)v->frontal_vehicles : NAN;
     add(w, "replications", "replications", 0, counted(v->replications));
-    add(w, "vehicle_km", "vehicle-km", 1, exactly(v->vehicle_km));
-    add(w, "vehicle_h", "vehicle-h", 1, exactly(v->vehicle_h));
+    add(w, "vehicle_km", "vehicle-km", 1, cp_estimate_of(v->vehicle_km));
+    add(w, "vehicle_h", "vehicle-h", 1, cp_estimate_of(v->vehicle_h));
     add(w, "crashes", "crashes", 0, counted(v->crashes));
     add(w, "frontal_crashes", "frontal crashes", 0, counted(v->frontal_crashes));
     add(w, "front_front_inside", "  front-front inside validity", 0,
         counted(v->front_front_inside));
     add_interval(w, "frontal_crashes_per_million_km", "frontal crashes per 10^6 veh-km", 0,
-                 exactly(v->rate), "bootstrap", v->rate_bootstrap);
-    add_interval(w, "frontal_crashes_per_million_km_widened", NULL, 0, exactly(v->rate),
+                 cp_estimate_of(v->rate), "bootstrap", v->rate_bootstrap);
+    add_interval(w, "frontal_crashes_per_million_km_widened", NULL, 0, cp_estimate_of(v->rate),
                  widened_kind(&v->rate_widening), v->rate_widened);
     last(w->list, 1)->second = true;
     add(w, "dispersion", "  dispersion over replications", 2,
-        exactly(v->rate_widening.dispersion_1));
+        cp_estimate_of(v->rate_widening.dispersion_1));
     add(w, "frontal_crashes_per_million_km_half_width_1", "  half-width, share of the rate", 2,
-        exactly(v->rate_precision.relative_1));
+        cp_estimate_of(v->rate_precision.relative_1));
     add(w, "replications_for_rate_within_10_percent", "  replications in all for +-10 %", 0,
-        exactly(v->rate_precision.replications_needed));
+        cp_estimate_of(v->rate_precision.replications_needed));
     add(w, "frontal_vehicles", "vehicles struck on the front", 0, counted(v->frontal_vehicles));
     add(w, "simulation_failed", "  crash simulation failed", 0, counted(v->simulation_failed));
-    add(w, "share_inside_validity", "  share inside validity", 2, exactly(share));
+    add(w, "share_inside_validity", "  share inside validity", 2, cp_estimate_of(share));
 }
 
 /* How severities that are exceeded are called. */
@@ -204,7 +199,7 @@ static void add_exceedance(const writer *w, int what, const cp_exceedance *e)
     add(w, named(name, "crashes_%.60s", of), exceeded_label(what, e->x, label), 0,
         counted(e->crashes));
     add_interval(w, named(name, "crashes_%.60s_per_million_km", of), "  per 10^6 veh-km", 0,
-                 exactly(e->rate), "poisson widened", e->interval);
+                 cp_estimate_of(e->rate), "poisson widened", e->interval);
     add(w, named(name, "crashes_%.60s_at_least", of), "  at least, outside range unknown", 0,
         counted(e->least));
     add(w, named(name, "crashes_%.60s_at_most", of), "  at most", 0, counted(e->most));
@@ -217,13 +212,60 @@ static void add_injuries(const cp_study_data *data, writer w, const cp_injury_fi
     for (size_t k = 0; k < data->risk_count; k++) {
         const cp_study_risk *risk = &data->risk[k];
         add(&w, named(name, "expected_injured_%.30s_%.20s", risk->name, risk->level), NULL, 2,
-            exactly(injury[k].expected));
+            cp_estimate_of(injury[k].expected));
         add_interval(
             &w, named(name, "expected_injured_per_million_km_%.30s_%.20s", risk->name, risk->level),
             w.scope == CP_SCOPE_INSIDE ? NULL
                                        : named(label, "  %.30s (%.30s)", risk->level, risk->name),
-            1, exactly(injury[k].rate), "bootstrap", injury[k].rate_interval);
+            1, cp_estimate_of(injury[k].rate), "bootstrap", injury[k].rate_interval);
     }
+}
+
+/* How the model's part of a figure is called: "olc_median" + "_with_model" + "_g". */
+typedef struct model_names {
+    const char *of;
+    const char *unit; /* with its underscore */
+    const char *label;
+    const char *kind; /* of the interval from replications */
+    int digits;
+} model_names;
+
+// The estimate with both intervals, then what the sets say.
+static void add_model_part(const writer *w, const model_names *n, const cp_model_part *part)
+{
+    char name[CP_QUANTITY_TEXT_SIZE];
+    if (part->sets == 0)
+        return;
+    const char *missing =
+        part->status == CP_INTERVAL_VALUE ? NULL : cp_interval_status_text(part->status);
+    add_interval(w, named(name, "%s_with_model%s", n->of, n->unit), n->label, n->digits,
+                 part->estimate, "replications and model", part->combined);
+    add_interval(w, named(name, "%s_by_replications%s", n->of, n->unit), NULL, n->digits,
+                 part->estimate, n->kind, part->replications);
+    last(w->list, 1)->second = true;
+    add(w, named(name, "%s_model_half_width%s", n->of, n->unit), "    95 % half-width, model",
+        n->digits, cp_estimate_of(part->half_width));
+    last(w->list, 1)->missing = missing;
+    add(w, named(name, "%s_model_sd%s", n->of, n->unit), "    sd over parameter sets",
+        n->digits + 1, cp_estimate_of(part->sd));
+    last(w->list, 1)->missing = missing;
+    add(w, named(name, "%s_model_mean%s", n->of, n->unit), "    mean over parameter sets",
+        n->digits, cp_estimate_of(part->mean));
+    last(w->list, 1)->missing = missing;
+}
+
+static const char MODEL_SECTION[] = "OLC with the uncertainty of its model, g";
+
+static void add_model_of_variant(cp_quantities *list, const cp_variant_figures *figures)
+{
+    static const model_names MEDIAN = {"olc_median", "_g", "  median", "bootstrap", 1};
+    const writer w = {list, MODEL_SECTION, CP_SCOPE_ALL, 1.0};
+    if (figures->olc_median_model.sets == 0)
+        return;
+    add(&w, "olc_model_sets", "  parameter sets", 0, counted(figures->olc_median_model.sets));
+    add(&w, "olc_model_without_sets", "  vehicles without, certain here", 0,
+        counted(figures->without_sets));
+    add_model_part(&w, &MEDIAN, &figures->olc_median_model);
 }
 
 void cp_quantities_of_variant(const cp_study_data *data, const cp_variant_figures *figures,
@@ -242,21 +284,22 @@ void cp_quantities_of_variant(const cp_study_data *data, const cp_variant_figure
             if (q != CP_QUANTITY_OLC)
                 continue;
             add(&w, "olc_ecdf_band_half_width_1", NULL, 3,
-                exactly(figures->olc_band[w.scope].half_width_1));
+                cp_estimate_of(figures->olc_band[w.scope].half_width_1));
             add(&w, "replications_for_olc_mean_within_10_percent",
                 w.scope == CP_SCOPE_INSIDE ? NULL : "  replications in all for mean +-10 %", 0,
-                exactly(figures->olc_mean_precision[w.scope].replications_needed));
+                cp_estimate_of(figures->olc_mean_precision[w.scope].replications_needed));
         }
         w.factor = 1.0;
         add_injuries(data, w, figures->injury[w.scope]);
     }
+    add_model_of_variant(list, figures);
 }
 
 // A p-value, or why there is none.
 static void add_test(const writer *w, const char *name, const char *label, double p,
                      cp_interval_status why)
 {
-    cp_quantity *q = add(w, name, label, 4, exactly(p));
+    cp_quantity *q = add(w, name, label, 4, cp_estimate_of(p));
     q->missing = isnan(p) && why != CP_INTERVAL_VALUE ? cp_interval_status_text(why) : NULL;
 }
 
@@ -286,30 +329,30 @@ static void add_contrast(const writer *w, int q, const cp_contrast_figures *figu
                  "bootstrap", c->p90_interval);
     const cp_superiority *s = &c->superiority;
     add_interval(&pure, named(name, "%s_cliffs_delta", of), "  Cliff's delta", 2,
-                 exactly(s->cliffs_delta), "jackknife", s->interval);
+                 cp_estimate_of(s->cliffs_delta), "jackknife", s->interval);
     if (q == CP_QUANTITY_OLC) {
         const cp_superiority *bound = figures->olc_bound;
         add_interval(&pure, "olc_cliffs_delta_at_least", "    at least, outside range unknown", 2,
-                     exactly(bound[0].cliffs_delta), "jackknife", bound[0].interval);
+                     cp_estimate_of(bound[0].cliffs_delta), "jackknife", bound[0].interval);
         add_interval(&pure, "olc_cliffs_delta_at_most", "    at most", 2,
-                     exactly(bound[1].cliffs_delta), "jackknife", bound[1].interval);
+                     cp_estimate_of(bound[1].cliffs_delta), "jackknife", bound[1].interval);
     }
     add_test(&pure, named(name, "%s_mann_whitney_p", of), "  p (Mann-Whitney, studentised)", s->p,
              s->status);
     add(&pure, named(name, "%s_mann_whitney_p_holm", of), "  p, Holm", 4,
-        exactly(figures->severity_p_holm[q]));
+        cp_estimate_of(figures->severity_p_holm[q]));
     add(&pure, named(name, "%s_kolmogorov_smirnov_d", of),
-        whole ? "  largest distance of ECDFs" : NULL, 2, exactly(c->distance));
+        whole ? "  largest distance of ECDFs" : NULL, 2, cp_estimate_of(c->distance));
     add_test(&pure, named(name, "%s_kolmogorov_smirnov_p", of),
              whole ? "  p (Kolmogorov-Smirnov, bootstrap)" : NULL, c->distance_p,
              s->status == CP_INTERVAL_VALUE ? CP_INTERVAL_TOO_FEW_REPLICATIONS : s->status);
     add(&pure, named(name, "%s_kolmogorov_smirnov_p_holm", of), whole ? "  p, Holm" : NULL, 4,
-        exactly(figures->distance_p_holm[q]));
+        cp_estimate_of(figures->distance_p_holm[q]));
 }
 
 static cp_estimate bounded(double bound)
 {
-    return exactly(isfinite(bound) ? bound : NAN);
+    return cp_estimate_of(isfinite(bound) ? bound : NAN);
 }
 
 static void add_benefits(const cp_study_data *data, const writer *w,
@@ -321,12 +364,22 @@ static void add_benefits(const cp_study_data *data, const writer *w,
         const cp_study_risk *risk = &data->risk[k];
         add_interval(&percent, named(name, "benefit_1_%.30s_%.30s", risk->name, risk->level),
                      named(label, "  %.30s (%.30s)", risk->level, risk->name), 1,
-                     exactly(benefit[k].benefit_1), "bootstrap", benefit[k].interval);
+                     cp_estimate_of(benefit[k].benefit_1), "bootstrap", benefit[k].interval);
         add(&percent, named(name, "benefit_at_least_1_%.30s_%.30s", risk->name, risk->level),
             "    at least, outside range unknown", 1, bounded(benefit[k].bound[0]));
         add(&percent, named(name, "benefit_at_most_1_%.30s_%.30s", risk->name, risk->level),
             "    at most", 1, bounded(benefit[k].bound[1]));
     }
+}
+
+static void add_model_of_contrast(cp_quantities *list, const cp_contrast_figures *figures)
+{
+    static const model_names MEDIAN = {"olc_median_difference", "_g", "  difference of medians",
+                                       "bootstrap", 1};
+    static const model_names DELTA = {"olc_cliffs_delta", "", "  Cliff's delta", "jackknife", 2};
+    const writer w = {list, MODEL_SECTION, CP_SCOPE_ALL, 1.0};
+    add_model_part(&w, &MEDIAN, &figures->median_model);
+    add_model_part(&w, &DELTA, &figures->delta_model);
 }
 
 void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figures *figures,
@@ -338,17 +391,17 @@ void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figu
     add(&w, "replications_compared", "replications compared", 0, counted(figures->replications[1]));
     add(&w, "replications_without_partner", "  finished without a partner, left out", 0,
         counted(figures->partnerless[0] + figures->partnerless[1]));
-    add_interval(&w, "rate_ratio", "rate ratio of frontal crashes", 2, exactly(figures->rate_ratio),
-                 "bootstrap", figures->rate_ratio_bootstrap);
-    add_interval(&w, "rate_ratio_widened", NULL, 2, exactly(figures->rate_ratio),
+    add_interval(&w, "rate_ratio", "rate ratio of frontal crashes", 2,
+                 cp_estimate_of(figures->rate_ratio), "bootstrap", figures->rate_ratio_bootstrap);
+    add_interval(&w, "rate_ratio_widened", NULL, 2, cp_estimate_of(figures->rate_ratio),
                  widened_kind(&figures->rate_ratio_widening), figures->rate_ratio_widened);
     last(w.list, 1)->second = true;
     add(&w, "rate_ratio_dispersion", "  dispersion of the ratio", 2,
-        exactly(figures->rate_ratio_widening.dispersion_1));
-    add(&w, "rate_p", "  p", 4, exactly(figures->rate_p));
-    add(&w, "rate_p_holm", "  p, Holm", 4, exactly(figures->rate_p_holm));
+        cp_estimate_of(figures->rate_ratio_widening.dispersion_1));
+    add(&w, "rate_p", "  p", 4, cp_estimate_of(figures->rate_p));
+    add(&w, "rate_p_holm", "  p, Holm", 4, cp_estimate_of(figures->rate_p_holm));
     add(&w, "replications_for_rate_ratio_within_10_percent", "  replications in all for +-10 %", 0,
-        exactly(figures->rate_ratio_precision.replications_needed));
+        cp_estimate_of(figures->rate_ratio_precision.replications_needed));
     for (int what = 0; what < CP_EXCEEDED_COUNT; what++) {
         char of[CP_QUANTITY_TEXT_SIZE], name[CP_QUANTITY_TEXT_SIZE], label[CP_QUANTITY_TEXT_SIZE];
         char text[CP_QUANTITY_TEXT_SIZE];
@@ -356,7 +409,7 @@ void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figu
         exceeded_name(what, r->x, of);
         add_interval(&w, named(name, "rate_ratio_%.60s", of),
                      named(label, "rate ratio of %.60s", exceeded_label(what, r->x, text)), 2,
-                     exactly(r->ratio), "poisson widened", r->interval);
+                     cp_estimate_of(r->ratio), "poisson widened", r->interval);
         add(&w, named(name, "rate_ratio_%.60s_at_least", of), "    at least, outside range unknown",
             2, bounded(r->bound[0]));
         add(&w, named(name, "rate_ratio_%.60s_at_most", of), "    at most", 2,
@@ -368,6 +421,7 @@ void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figu
         w.factor = QUANTITY[q].factor;
         add_contrast(&w, q, figures);
     }
+    add_model_of_contrast(list, figures);
     w.factor = 1.0;
     add_benefits(data, &w, figures->benefit);
 }
@@ -381,20 +435,20 @@ static void add_paired(const writer *w, const char *of, const char *unit, const 
     const writer pure = {w->list, w->section, -1, 1.0};
     add(&pure, named(name, "paired_%s_%s_n", of, which), "  pairs", 0, counted(paired->count));
     add_interval(w, named(name, "paired_%s_%s_hodges_lehmann_%s", of, which, unit),
-                 "  change, Hodges-Lehmann", 1, exactly(paired->hodges_lehmann), "bootstrap",
+                 "  change, Hodges-Lehmann", 1, cp_estimate_of(paired->hodges_lehmann), "bootstrap",
                  paired->hodges_lehmann_interval);
     add_interval(w, named(name, "paired_%s_%s_mean_%s", of, which, unit), "  mean change", 1,
-                 exactly(paired->mean), "bootstrap", paired->mean_interval);
+                 cp_estimate_of(paired->mean), "bootstrap", paired->mean_interval);
     add(&pure, named(name, "paired_%s_%s_lower", of, which), "  pairs with less", 0,
         counted(paired->lower));
     add(&pure, named(name, "paired_%s_%s_higher", of, which), "  pairs with more", 0,
         counted(paired->higher));
     add(&pure, named(name, "paired_%s_%s_signed_rank_v", of, which), NULL, 1,
-        exactly(paired->signed_rank.statistic));
+        cp_estimate_of(paired->signed_rank.statistic));
     add(&pure, named(name, "paired_%s_%s_signed_rank_p", of, which),
-        "  p (signed rank, by replication)", 4, exactly(paired->signed_rank.p));
+        "  p (signed rank, by replication)", 4, cp_estimate_of(paired->signed_rank.p));
     add(&pure, named(name, "paired_%s_%s_signed_rank_p_holm", of, which), "  p, Holm", 4,
-        exactly(p_holm));
+        cp_estimate_of(p_holm));
 }
 
 // Of the crashes that were inside validity with the baseline, before any treatment.
@@ -411,12 +465,12 @@ static void add_pairs_inside(const writer *w, const cp_counterfactual_figures *f
         double valid = figures->inside_valid ? (double)figures->inside_valid : NAN;
         add_interval(&in, named(name, "inside_share_%s_1", cp_outcome_text((cp_outcome)o)),
                      named(label, "  share %s", cp_outcome_text((cp_outcome)o)), 2,
-                     exactly((double)figures->inside_outcome[o] / valid), "binomial widened",
+                     cp_estimate_of((double)figures->inside_outcome[o] / valid), "binomial widened",
                      figures->inside_share[o]);
     }
     const cp_paired *olc = &figures->inside_olc_g;
     add_interval(&in, "inside_paired_olc_hodges_lehmann_g", "  change of OLC, g, avoided = 0 g", 1,
-                 exactly(olc->hodges_lehmann), "bootstrap", olc->hodges_lehmann_interval);
+                 cp_estimate_of(olc->hodges_lehmann), "bootstrap", olc->hodges_lehmann_interval);
 }
 
 void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_figures *figures,
@@ -432,8 +486,8 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
     for (int o = CP_OUTCOME_CHANGED_OPPONENT; o < CP_OUTCOME_NO_OLC; o++) {
         double share = figures->valid ? (double)figures->outcome[o] / (double)figures->valid : NAN;
         add_interval(&w, named(name, "share_%s_1", cp_outcome_text((cp_outcome)o)),
-                     named(label, "  share %s", cp_outcome_text((cp_outcome)o)), 2, exactly(share),
-                     "binomial widened", figures->share[o]);
+                     named(label, "  share %s", cp_outcome_text((cp_outcome)o)), 2,
+                     cp_estimate_of(share), "binomial widened", figures->share[o]);
     }
     add_pairs_inside(&w, figures);
     for (int o = 0; o <= CP_OUTCOME_NO_OLC; o++)
@@ -443,7 +497,8 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
     for (int r = CP_NULL_REPRODUCED + 1; r <= CP_NULL_NOT_REPRODUCED; r++)
         add(&w, named(name, "invalid_%s", cp_null_status_text((cp_null_status)r)), NULL, 0,
             counted(figures->reason[r]));
-    add(&w, "new_crashes", "new crashes between others (vanished ones not counted)", 0, exactly(figures->new_crashes));
+    add(&w, "new_crashes", "new crashes between others (vanished ones not counted)", 0,
+        cp_estimate_of(figures->new_crashes));
     static const char *const OLC[] = {"OLC, g, all valid pairs (avoided = 0 g)",
                                       "OLC, g, conditional on crashing"};
     static const char *const SPEED[] = {"closing speed, km/h, all valid pairs (avoided = 0)",
@@ -452,6 +507,9 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
         w.section = OLC[which];
         add_paired(&w, "olc", "g", CP_PAIRED_TEXT[which], &figures->olc_g[which],
                    figures->p_holm[which]);
+        named(name, "paired_olc_%s_hodges_lehmann", CP_PAIRED_TEXT[which]);
+        add_model_part(&w, &(model_names){name, "_g", "  change, Hodges-Lehmann", "bootstrap", 1},
+                       &figures->olc_model[which]);
     }
     for (int which = 0; which < CP_PAIRED_COUNT; which++) {
         writer speed = {list, SPEED[which], -1, 3.6};

@@ -60,18 +60,24 @@ cp_status cp_report_write(cp_store *store, const char *baseline, const char *pat
     char *answer = NULL;
     size_t variant = 0;
     cp_comparison_options options = cp_comparison_options_default();
+    cp_model_ensemble ensemble = {0};
     cp_status status = cp_study_data_read(store, &data, error);
     if (status == CP_OK && data.replication_count == 0)
         status = cp_fail(error, CP_BAD_INPUT, "%s: no replication is finished yet",
                          cp_store_path(store));
     if (status == CP_OK)
         status = cp_study_data_variant(&data, baseline, &variant, error);
+    // What the ensemble of the vehicle models leaves open is part of the answer where there is one.
+    if (status == CP_OK)
+        status = cp_model_ensemble_read(store, &data, &ensemble, error);
+    options.ensemble = &ensemble;
     if (status == CP_OK)
         status = cp_page_data(store, &data, variant, &options, &page_data, &answer, error);
     if (status == CP_OK)
         status = write_page(&data, page_data, answer, path, error);
     json_decref(page_data);
     free(answer);
+    cp_model_ensemble_destroy(&ensemble);
     cp_study_data_destroy(&data);
     return status;
 }

@@ -2,6 +2,7 @@
 #include "report/study_data.h"
 
 #include "report/query_json.h"
+#include "report/study_places.h"
 #include "store/query.h"
 
 #include <math.h>
@@ -237,27 +238,6 @@ static cp_status read_pair(void *context, const cp_row *row, cp_error *error)
     return CP_OK;
 }
 
-/* Places (from 0) of scenarios, variants, replications and crashes in the order they are read in.
- * A variant with a sweep counts as one variant a sweep point. */
-#define PLACES                                                                                     \
-    "WITH point AS (SELECT DISTINCT variant_id, sweep FROM replication),"                          \
-    " s AS (SELECT *, row_number() OVER (ORDER BY number, name) - 1 AS place FROM scenario),"      \
-    " v AS (SELECT variant.id AS id, coalesce(point.sweep, '') AS sweep, is_baseline, functions,"  \
-    " name || CASE WHEN coalesce(point.sweep, '') = '' THEN '' ELSE ' [' || point.sweep || ']'"    \
-    " END AS name, row_number() OVER (ORDER BY number, name, point.sweep) - 1 AS place"            \
-    " FROM variant LEFT JOIN point ON point.variant_id = variant.id),"                             \
-    " r AS (SELECT x.*, s.place AS scenario, v.place AS variant,"                                  \
-    " row_number() OVER (ORDER BY s.place, x.number, v.place) - 1 AS place"                        \
-    " FROM replication AS x JOIN s ON s.id = x.scenario_id"                                        \
-    " JOIN v ON v.id = x.variant_id AND v.sweep = x.sweep WHERE x.status = 'done'),"               \
-    " t AS (SELECT crash_type, row_number() OVER (ORDER BY crash_type) - 1 AS place"               \
-    " FROM (SELECT DISTINCT crash_type FROM crash)),"                                              \
-    " c AS (SELECT x.*, r.place AS replication, t.place AS type, x.crash_type LIKE 'front-%'"      \
-    " AS frontal, row_number() OVER (ORDER BY r.place, x.number) - 1 AS place"                     \
-    " FROM crash AS x JOIN r ON r.id = x.replication_id JOIN t USING (crash_type)),"               \
-    " o AS (SELECT validity, row_number() OVER (ORDER BY validity <> 'inside', validity) - 1"      \
-    " AS place FROM (SELECT validity FROM crash_vehicle UNION SELECT 'inside')) "
-
 #define PREDICTORS_OF(w, closing)                                                                  \
     w ".delta_v_m_s, " w ".delta_v_x_m_s, " closing ", " w ".max_50ms_g, " w ".asi_1"
 
@@ -267,17 +247,18 @@ static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error
         const char *sql;
         cp_status (*row)(void *context, const cp_row *row, cp_error *error);
     } queries[] = {
-        {PLACES "SELECT name, driver_errors FROM s ORDER BY place", read_scenario},
-        {PLACES "SELECT name, is_baseline, functions FROM v ORDER BY place", read_variant},
-        {PLACES "SELECT scenario, variant, number, seed, vehicle_km, vehicle_h FROM r"
-                " ORDER BY place",
+        {CP_STUDY_PLACES "SELECT name, driver_errors FROM s ORDER BY place", read_scenario},
+        {CP_STUDY_PLACES "SELECT name, is_baseline, functions FROM v ORDER BY place", read_variant},
+        {CP_STUDY_PLACES "SELECT scenario, variant, number, seed, vehicle_km, vehicle_h FROM r"
+                         " ORDER BY place",
          read_replication},
-        {PLACES "SELECT crash_type FROM t ORDER BY place", read_crash_type},
-        {PLACES "SELECT validity FROM o ORDER BY place", read_validity},
-        {PLACES "SELECT replication, type, frontal, validity = 'inside', id, time_s, x_m, y_m"
-                " FROM c ORDER BY place",
+        {CP_STUDY_PLACES "SELECT crash_type FROM t ORDER BY place", read_crash_type},
+        {CP_STUDY_PLACES "SELECT validity FROM o ORDER BY place", read_validity},
+        {CP_STUDY_PLACES
+         "SELECT replication, type, frontal, validity = 'inside', id, time_s, x_m, y_m"
+         " FROM c ORDER BY place",
          read_crash},
-        {PLACES
+        {CP_STUDY_PLACES
          "SELECT c.place, w.role, CASE w.olc_status WHEN 'value' THEN 0 WHEN "
          "'simulation_failed' THEN 2 ELSE 1 END, w.olc_g, w.delta_v_m_s,"
          " c.closing_speed_m_s, c.lateral_offset_m, c.angle_rad, o.place, "
@@ -286,7 +267,7 @@ static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error
              "c.closing_speed_m_s") " FROM crash_vehicle AS w JOIN c ON c.id = w.crash_id"
                                     " JOIN o ON o.validity = w.validity ORDER BY c.place, w.role",
          read_vehicle},
-        {PLACES
+        {CP_STUDY_PLACES
          "SELECT c.place, v.place, p.outcome, p.outcome_olc, coalesce(p.reason,"
          " 'reproduced'), p.new_crashes, p.baseline_olc_g, p.treated_olc_g,"
          " p.baseline_closing_speed_m_s, CASE p.outcome WHEN 'avoided' THEN 0.0 ELSE"
@@ -517,7 +498,7 @@ cp_status cp_study_choose(cp_store *store, const cp_study_data *data, const char
             "%sSELECT c.place, x.role, x.by_value FROM (SELECT crash_id, role, %s AS by_value"
             " FROM crash_vehicle_list WHERE (%s\n)) AS x JOIN c ON c.id = x.crash_id"
             " ORDER BY x.by_value, c.place, x.role",
-            PLACES, by ? by : "NULL", where ? where : "1");
+            CP_STUDY_PLACES, by ? by : "NULL", where ? where : "1");
     cp_status status = CP_OK;
     if (fclose(out) != 0)
         status = cp_fail_memory(error, "a choice of vehicles");

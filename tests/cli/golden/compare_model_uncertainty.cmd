@@ -1,0 +1,1 @@
+"$crashpulse" compare small_study_members.db --no-store --model-uncertainty --format csv | awk -F, 'NR == 1 { print } /model|_by_replications/ { if ($6 * $6 < 1e-18) $6 = 0; printf "%s,%s,%s,%s,%s,%.6g,%.6g,%.6g,%s\n", $1, $2, $3, $4, $5, $6, $7, $8, $9 }'

@@ -357,10 +357,11 @@ void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figu
         add_interval(&w, named(name, "rate_ratio_%.60s", of),
                      named(label, "rate ratio of %.60s", exceeded_label(what, r->x, text)), 2,
                      exactly(r->ratio), "poisson widened", r->interval);
-        add(&w, named(name, "rate_ratio_%.60s_at_least", of), "    at least, outside range unknown",
-            2, bounded(r->bound[0]));
-        add(&w, named(name, "rate_ratio_%.60s_at_most", of), "    at most", 2,
-            bounded(r->bound[1]));
+        add_interval(&w, named(name, "rate_ratio_%.60s_at_least", of),
+                     "    at least, outside range unknown", 2, bounded(r->bound[0]),
+                     "poisson widened", r->bound_interval[0]);
+        add_interval(&w, named(name, "rate_ratio_%.60s_at_most", of), "    at most", 2,
+                     bounded(r->bound[1]), "poisson widened", r->bound_interval[1]);
     }
     w.scope = CP_SCOPE_ALL;
     for (int q = 0; q < CP_QUANTITIES_COMPARED; q++) {
@@ -443,7 +444,8 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
     for (int r = CP_NULL_REPRODUCED + 1; r <= CP_NULL_NOT_REPRODUCED; r++)
         add(&w, named(name, "invalid_%s", cp_null_status_text((cp_null_status)r)), NULL, 0,
             counted(figures->reason[r]));
-    add(&w, "new_crashes", "new crashes between others (vanished ones not counted)", 0, exactly(figures->new_crashes));
+    add(&w, "new_crashes", "new crashes between others (vanished ones not counted)", 0,
+        exactly(figures->new_crashes));
     static const char *const OLC[] = {"OLC, g, all valid pairs (avoided = 0 g)",
                                       "OLC, g, conditional on crashing"};
     static const char *const SPEED[] = {"closing speed, km/h, all valid pairs (avoided = 0)",

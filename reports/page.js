@@ -757,9 +757,9 @@
       add("rate ratio of frontal crashes", fixed(c.rate_ratio, 2), interval(c.rate_ratio_interval, two), "", pValue(c.rate_p), pValue(c.rate_p_holm));
       [["olc", 1, "g OLC"], ["delta_v", 3.6, "km/h delta-v"]].forEach(([key, factor, unit]) => {
         const r = c.crashes_above[key];
-        add(`rate ratio of crashes above ${Number((factor * r.x).toPrecision(6))} ${unit} (${r.crashes[1]} against ${r.crashes[0]})`, fixed(r.ratio, 2), interval(r.interval, two), bounds(r.bounds[0], r.bounds[1], two), "", "");
+        add(`rate ratio of crashes above ${Number((factor * r.x).toPrecision(6))} ${unit} (${r.crashes[1]} against ${r.crashes[0]})`, fixed(r.ratio, 2), interval(r.interval, two), bounds(r.bound_intervals[0].low, r.bound_intervals[1].high, two), "", "");
       });
-      add(`Cliff’s δ of OLC (${o.compared[1]} against ${o.compared[0]} vehicles)`, fixed(o.superiority.cliffs_delta, 2), interval(o.superiority.interval, two), bounds(c.olc_bounds[0].cliffs_delta, c.olc_bounds[1].cliffs_delta, two), test(o), pValue(o.p_holm));
+      add(`Cliff’s δ of OLC (${o.compared[1]} against ${o.compared[0]} vehicles)`, fixed(o.superiority.cliffs_delta, 2), interval(o.superiority.interval, two), c.olc_bounds.every(b => b.status === "value") ? bounds(c.olc_bounds[0].interval.low, c.olc_bounds[1].interval.high, two) : "–", test(o), pValue(o.p_holm));
       add(`difference in median OLC, g (${estimate(o.medians[1], 1)} against ${estimate(o.medians[0], 1)})`, estimate(o.median_difference, 1), interval(o.median_interval, one), "", "", "");
       add("difference in mean OLC, g", estimate(o.mean_difference, 1), interval(o.mean_interval, one), "", "", "");
       add("difference in 90 % OLC, g", estimate(o.p90_difference, 1), interval(o.p90_interval, one), "", "", "");
@@ -781,7 +781,7 @@
     const paired = slice().counterfactual.length > 0, without = list => paired ? list.filter((v, k) => k !== 4) : list;
     return {
       caption: paired ? "Within pairs, over all valid ones." : "Over all frontally struck vehicles, scenarios mixed alike.",
-      columns: without([{ name: "treatment", text: true }, { name: "treatment minus (over) baseline", text: true }, { name: "estimate" }, { name: "95 % interval" }, { name: "range unknown outside" }, { name: "p" }, { name: "p, Holm" }]),
+      columns: without([{ name: "treatment", text: true }, { name: "treatment minus (over) baseline", text: true }, { name: "estimate" }, { name: "95 % interval" }, { name: "95 %, unknown outside" }, { name: "p" }, { name: "p, Holm" }]),
       rows: rows.map(without)
     };
   });
@@ -881,7 +881,7 @@
     data.backgrounds.filter(b => b.warning).forEach(b => element(parent, "p", `Mind: ${b.warning}.`, { class: "warning" }));
     document.getElementById("note-contrasts").textContent = study.design === "counterfactual" ?
       "p by sign flips of whole replications; intervals by bootstrap over replications (BCa), given from 20 replications on, and of shares by counts widened by what replications scatter. Hodges–Lehmann: the median of all means of two changes. Holm’s adjustment covers every p of the table." :
-      `Rate: p by ${study.design === "paired_seeds" ? "sign flips of whole seed pairs" : "permutation of whole replications"}, interval by bootstrap over replications or, with fewer than 20 of them, of Poisson counts widened by what they scatter. Severity: Cliff’s δ, the chance that a vehicle of the treatment has the higher OLC minus the chance that it has the lower one, with a test and an interval from its own scatter over replications, which hold when one variant crashes more often; scenarios are compared within themselves. “Range unknown outside”: what is left when severities outside the validated range count as unknown. Holm’s adjustment covers every p of the comparison.`;
+      `Rate: p by ${study.design === "paired_seeds" ? "sign flips of whole seed pairs" : "permutation of whole replications"}, interval by bootstrap over replications or, with fewer than 20 of them, of Poisson counts widened by what they scatter. Severity: Cliff’s δ, the chance that a vehicle of the treatment has the higher OLC minus the chance that it has the lower one, with a test and an interval from its own scatter over replications, which hold when one variant crashes more often; scenarios are compared within themselves. “95 %, unknown outside”: what is left of the interval when severities outside the validated range count as unknown. Holm’s adjustment covers every p of the comparison.`;
   }
 
   function reproduce() {

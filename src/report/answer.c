@@ -92,13 +92,15 @@ static void write_exceedance(FILE *out, const cp_exceedance_ratio *r)
         fprintf(out, "%.2f times the rate (", r->ratio);
         write_interval(out, r->interval, 2, "interval");
         fprintf(out, "; %zu against %zu", r->crashes[1], r->crashes[0]);
-        if (isfinite(r->bound[0]) && isfinite(r->bound[1]))
-            fprintf(out,
-                    "; anything from %.2f to %.2f if severities outside the validated range "
-                    "count as unknown",
-                    r->bound[0], r->bound[1]);
+        // From the least that the one bound leaves to the most that the other does.
+        cp_interval reach = {CP_INTERVAL_VALUE, r->bound_interval[0].low,
+                             r->bound_interval[1].high};
+        fputs("; with severities outside the validated range unknown, ", out);
+        if (r->bound_interval[0].status == CP_INTERVAL_VALUE &&
+            r->bound_interval[1].status == CP_INTERVAL_VALUE)
+            write_interval(out, reach, 2, "interval");
         else
-            fputs("; anything if severities outside the validated range count as unknown", out);
+            fputs("nothing is known", out);
         fputc(')', out);
     }
     fputs(". ", out);

@@ -315,6 +315,8 @@ static cp_status contrast_benefit(const cp_study_data *data, const cp_replicatio
     double km = total(set[0].vehicle_km, set[0].count) / total(set[1].vehicle_km, set[1].count);
     benefit->bound[0] = 1.0 - km * (known[1] + open[1]) / known[0];
     benefit->bound[1] = 1.0 - km * known[1] / (known[0] + open[0]);
+    if (ratio.status == CP_INTERVAL_TOO_FEW_CRASHES)
+        benefit->bound[0] = benefit->bound[1] = NAN;
     return status;
 }
 

@@ -69,7 +69,8 @@ typedef struct cp_benefit_figures {
     double benefit_1; /* NAN without any expected with the baseline */
     cp_interval interval;
     double bound[2]; /* of the benefit, lower and upper, were the risk of each vehicle outside
-                        validity, or without a predictor, anything from 0 to 1; -INFINITY; NAN */
+                        validity, or without a predictor, anything from 0 to 1; -INFINITY; NAN, also
+                        of too few crashes for an interval */
 } cp_benefit_figures;
 
 typedef struct cp_variant_figures {

@@ -145,12 +145,13 @@ static json_t *exceedance_ratios_json(const cp_contrast_figures *c)
     json_t *object = json_object();
     for (int what = 0; what < CP_EXCEEDED_COUNT; what++) {
         const cp_exceedance_ratio *r = &c->above[what];
-        json_object_set_new(object, CP_EXCEEDED_TEXT[what],
-                            json_pack("{s:f, s:[I, I], s:o, s:o, s:[o, o]}", "x", r->x, "crashes",
-                                      (json_int_t)r->crashes[0], (json_int_t)r->crashes[1], "ratio",
-                                      cp_number_json(r->ratio), "interval",
-                                      interval_json(r->interval), "bounds",
-                                      cp_number_json(r->bound[0]), cp_number_json(r->bound[1])));
+        json_object_set_new(
+            object, CP_EXCEEDED_TEXT[what],
+            json_pack("{s:f, s:[I, I], s:o, s:o, s:[o, o], s:[o, o]}", "x", r->x, "crashes",
+                      (json_int_t)r->crashes[0], (json_int_t)r->crashes[1], "ratio",
+                      cp_number_json(r->ratio), "interval", interval_json(r->interval), "bounds",
+                      cp_number_json(r->bound[0]), cp_number_json(r->bound[1]), "bound_intervals",
+                      interval_json(r->bound_interval[0]), interval_json(r->bound_interval[1])));
     }
     return object;
 }

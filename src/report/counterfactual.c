@@ -264,6 +264,8 @@ static cp_status figure_benefit(const pairs *p, cp_counterfactual_figures *figur
         status = cp_rate_bootstrap(&ratio, p->set->stratum, p->data->seed, &interval, error);
         benefit->interval = (cp_interval){interval.status, 1.0 - interval.high, 1.0 - interval.low};
         bound_benefit(p, &p->data->risk[k], benefit->bound);
+        if (interval.status == CP_INTERVAL_TOO_FEW_CRASHES)
+            benefit->bound[0] = benefit->bound[1] = NAN;
     }
     free(baseline);
     free(treated);

@@ -144,6 +144,7 @@ static double ratio_of(const arms *a)
 
 static void figure_ratio(const arms *a, const cp_resampling *resampling, cp_exceedance_ratio *r)
 {
+    cp_widening widening;
     // The ratio is least when the treatment has the fewest and the baseline the most.
     for (int end = 0; end < 2; end++) {
         double all[2];
@@ -151,11 +152,12 @@ static void figure_ratio(const arms *a, const cp_resampling *resampling, cp_exce
             all[g] = count(&a->list[g], r->x, g == end ? COUNT_MOST : COUNT_LEAST, a->events[g],
                            a->set[g].count);
         r->bound[end] = all[0] > 0.0 ? ratio_of(a) : all[1] > 0.0 ? INFINITY : NAN;
+        r->bound_interval[end] =
+            cp_rate_ratio_widened(&a->exposure[0], &a->exposure[1], resampling, &widening);
     }
     for (int g = 0; g < 2; g++)
         r->crashes[g] =
             (size_t)count(&a->list[g], r->x, COUNT_ABOVE, a->events[g], a->set[g].count);
-    cp_widening widening;
     r->ratio = ratio_of(a);
     r->interval = cp_rate_ratio_widened(&a->exposure[0], &a->exposure[1], resampling, &widening);
 }

@@ -47,6 +47,8 @@ typedef struct cp_exceedance_ratio {
     cp_interval interval;
     double bound[2]; /* of the ratio, lower and upper, with every severity outside unknown; upper
                         +INFINITY, both NAN when nothing is known */
+    cp_interval bound_interval[2]; /* 95 %, of each of the two: together they reach from the lower
+                                      end of the first to the upper of the second */
 } cp_exceedance_ratio;
 
 #endif

@@ -410,10 +410,11 @@ void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figu
         add_interval(&w, named(name, "rate_ratio_%.60s", of),
                      named(label, "rate ratio of %.60s", exceeded_label(what, r->x, text)), 2,
                      cp_estimate_of(r->ratio), "poisson widened", r->interval);
-        add(&w, named(name, "rate_ratio_%.60s_at_least", of), "    at least, outside range unknown",
-            2, bounded(r->bound[0]));
-        add(&w, named(name, "rate_ratio_%.60s_at_most", of), "    at most", 2,
-            bounded(r->bound[1]));
+        add_interval(&w, named(name, "rate_ratio_%.60s_at_least", of),
+                     "    at least, outside range unknown", 2, bounded(r->bound[0]),
+                     "poisson widened", r->bound_interval[0]);
+        add_interval(&w, named(name, "rate_ratio_%.60s_at_most", of), "    at most", 2,
+                     bounded(r->bound[1]), "poisson widened", r->bound_interval[1]);
     }
     w.scope = CP_SCOPE_ALL;
     for (int q = 0; q < CP_QUANTITIES_COMPARED; q++) {

@@ -115,6 +115,10 @@ static void no_treated_crash_leaves_an_upper_bound(void **state)
     assert_true(ratio.high > 0.1 && ratio.high < 0.3);
     assert_int_equal(f->rate_ratio_bootstrap.status, CP_INTERVAL_TOO_FEW_CRASHES);
     assert_int_equal(f->benefit[0].interval.status, CP_INTERVAL_TOO_FEW_CRASHES);
+    assert_true(isnan(f->benefit[0].bound[0]) && isnan(f->benefit[0].bound[1]));
+    for (int what = 0; what < CP_EXCEEDED_COUNT; what++)
+        assert_true(f->above[what].bound_interval[0].low == 0.0 &&
+                    f->above[what].bound_interval[1].high > 0.0);
     assert_true(c.variant[1].rate_widened.low == 0.0 && c.variant[1].rate_widened.high > 1e3);
     // The baseline's counts are all alike, and so is every resample.
     assert_int_equal(c.variant[0].rate_bootstrap.status, CP_INTERVAL_ALL_ALIKE);

@@ -208,13 +208,17 @@ GROUP BY v.id, c.crash_type
 ORDER BY v.number, c.crash_type;
 
 -- SUMO's own reports of colliding pairs against ours: matched are crashes, explained have a verdict,
--- unexplained touched nobody.
+-- apart never touched by their outlines: SUMO compares places along a lane, and the nearest the two came
+-- stands beside it; unexplained are the rest.
 DROP VIEW IF EXISTS sumo_collision_check;
 CREATE VIEW sumo_collision_check AS
 SELECT s.name AS scenario, v.name AS variant, count(*) AS reported_by_sumo,
        sum(x.found_as = 'crash') AS matched,
        sum(x.found_as NOT IN ('crash', 'no_contact')) AS explained,
-       sum(x.found_as = 'no_contact') AS unexplained
+       sum(x.found_as = 'no_contact' AND coalesce(x.gap_m, 0.0) > 0.0) AS apart,
+       min(x.gap_m) FILTER (WHERE x.found_as = 'no_contact' AND x.gap_m > 0.0) AS apart_min_m,
+       max(x.gap_m) FILTER (WHERE x.found_as = 'no_contact' AND x.gap_m > 0.0) AS apart_max_m,
+       sum(x.found_as = 'no_contact' AND coalesce(x.gap_m, 0.0) <= 0.0) AS unexplained
 FROM sumo_collision AS x
 JOIN replication AS r ON r.id = x.replication_id
 JOIN scenario AS s ON s.id = r.scenario_id

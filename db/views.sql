@@ -252,8 +252,10 @@ ORDER BY s.number, c.reason, c.crash_type;
 
 -- The same in all beside the baseline: background crashes to expect in as many vehicle-km as the
 -- baseline has, which are the network's doing, not the drivers'; NULL before it has any.
--- is_negligible: none, or at most 5 % of the baseline's crashes and of its frontal ones; NULL when no
--- background was simulated.
+-- scale_1: the baseline's vehicle-km over those of the background. is_negligible: none, or at most 5 % of
+-- the baseline's crashes and of its frontal ones, by the expected numbers (status, compare and report
+-- judge by the upper bound of the exact 95 % interval, which SQL cannot tell); NULL when no background
+-- was simulated.
 DROP VIEW IF EXISTS background_by_scenario;
 CREATE VIEW background_by_scenario AS
 WITH background AS (
@@ -296,6 +298,7 @@ WITH background AS (
 SELECT scenario, scenario_id, runs, simulated_s, vehicle_km, vehicle_h, crashes, frontal_crashes,
        other_contacts, baseline_vehicle_km, baseline_crashes, baseline_frontal_crashes,
        crashes * scale_1 AS expected_crashes, frontal_crashes * scale_1 AS expected_frontal_crashes,
+       scale_1,
        CASE WHEN runs > 0 THEN
            crashes = 0 OR coalesce(crashes * scale_1 <= 0.05 * baseline_crashes
                                    AND frontal_crashes * scale_1 <= 0.05 * baseline_frontal_crashes,

@@ -154,8 +154,15 @@ static cp_status assess_one(collision_view *view, cp_result_rows *results,
     const char *found_as = "no_contact";
     if (!contact.is_found) {
         count->no_contact++;
-        cp_log_warning("%s:%zu: '%s' and '%s' do not touch, nearest %g m", view->list_path,
-                       listed->line, ids[0], ids[1], contact.gap_m);
+        int missing = view->track[0].count == 0 ? 0 : view->track[1].count == 0 ? 1 : -1;
+        if (missing >= 0)
+            cp_log_warning(
+                "%s:%zu: '%s' is not in the record around %g s: whether it and '%s' touch "
+                "is not known",
+                view->list_path, listed->line, ids[missing], listed->time_s, ids[1 - missing]);
+        else
+            cp_log_warning("%s:%zu: '%s' and '%s' do not touch, nearest %g m", view->list_path,
+                           listed->line, ids[0], ids[1], contact.gap_m);
     } else if (contact.impact.verdict != CP_CONTACT_CONFIRMED) {
         count->filtered++;
         found_as = cp_contact_verdict_text(contact.impact.verdict);
@@ -202,6 +209,9 @@ cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_p
                                cp_assessment_count *count, cp_error *error)
 {
     *count = (cp_assessment_count){.listed = list->count};
+    if (list->with_themselves > 0)
+        cp_log_warning("%s: %zu rows in which a vehicle collides with itself are passed over",
+                       list_path, list->with_themselves);
     cp_status status = check_seen(list, list_path, record, error);
     for (size_t k = 0; status == CP_OK && k < list->count; k++) {
         collision_view view = {.listed = &list->collision[k],

@@ -7,6 +7,12 @@
 #define CLOSE_CORNERS_M 1.0
 #define LANES_MAX 24 /* that follow each other within any reach */
 
+// Without the care for overflow that hypot takes: this is asked millions of times.
+static double length_of(cp_vec2 vector)
+{
+    return sqrt(cp_vec2_dot(vector, vector));
+}
+
 static cp_vec2 flat(const cp_lane_point *point)
 {
     return (cp_vec2){point->x_m, point->y_m};
@@ -28,7 +34,7 @@ static foot find_foot(const cp_lane *lane, cp_vec2 point_m)
     for (size_t k = 0; k + 1 < lane->point_count; k++) {
         cp_vec2 from_m = flat(&lane->point[k]);
         cp_vec2 way_m = cp_vec2_sub(flat(&lane->point[k + 1]), from_m);
-        double length_m = cp_vec2_length(way_m);
+        double length_m = length_of(way_m);
         if (!(length_m > 0.0))
             continue;
         cp_vec2 tangent = cp_vec2_scale(way_m, 1.0 / length_m);
@@ -61,7 +67,7 @@ static void add_corner(cp_lane_ahead *ahead, cp_vec2 point_m, uint32_t lane, dou
                        double z_m)
 {
     const cp_way_point *last = &ahead->corner[ahead->count - 1];
-    double step_m = cp_vec2_length(cp_vec2_sub(point_m, last->point_m));
+    double step_m = length_of(cp_vec2_sub(point_m, last->point_m));
     if (ahead->count == CP_LANE_AHEAD_POINTS || step_m < 1e-6)
         return;
     ahead->corner[ahead->count++] =
@@ -77,7 +83,7 @@ static void follow_lane(layer *on, const cp_lane *lane, uint32_t number, size_t 
     for (size_t k = 0; k < left; k++) {
         const cp_way_point *last = &ahead->corner[ahead->count - 1];
         const cp_lane_point *point = &lane->point[on->is_reversed ? first - k : first + k];
-        bool is_close = cp_vec2_length(cp_vec2_sub(flat(point), last->point_m)) < CLOSE_CORNERS_M;
+        bool is_close = length_of(cp_vec2_sub(flat(point), last->point_m)) < CLOSE_CORNERS_M;
         if (last->way_m > reach_m)
             return;
         if (!is_close || k + 1 == left)
@@ -130,7 +136,7 @@ static void shift(cp_lane_ahead *ahead, double left_m, double slope_1)
         cp_vec2 after = before;
         if (k + 1 < ahead->count) {
             cp_vec2 piece_m = cp_vec2_sub(ahead->corner[k + 1].point_m, ahead->corner[k].point_m);
-            after = cp_vec2_scale(piece_m, 1.0 / cp_vec2_length(piece_m));
+            after = cp_vec2_scale(piece_m, 1.0 / length_of(piece_m));
         }
         if (k == ahead->front)
             before = after;
@@ -146,7 +152,7 @@ static void shift(cp_lane_ahead *ahead, double left_m, double slope_1)
     double way_m = 0.0;
     for (size_t k = ahead->front; k < ahead->count; k++) {
         if (k > ahead->front)
-            way_m += cp_vec2_length(cp_vec2_sub(moved_m[k], ahead->corner[k - 1].point_m));
+            way_m += length_of(cp_vec2_sub(moved_m[k], ahead->corner[k - 1].point_m));
         ahead->corner[k].point_m = moved_m[k];
         ahead->corner[k].way_m = way_m;
     }
@@ -159,7 +165,7 @@ static void begin_behind(const cp_vehicle_motion *motion, cp_lane_ahead *ahead)
     const cp_vehicle_state *then = motion->was_present ? &motion->before : now;
     cp_vec2 front_m = {now->front_x_m, now->front_y_m};
     cp_vec2 before_m = {then->front_x_m, then->front_y_m};
-    double step_m = cp_vec2_length(cp_vec2_sub(front_m, before_m));
+    double step_m = length_of(cp_vec2_sub(front_m, before_m));
     bool has_moved = step_m > 1e-6;
     cp_vec2 rear_m =
         cp_vec2_sub(before_m, cp_vec2_scale(cp_vec2_heading(then->yaw_rad), now->length_m + 1.0));
@@ -248,6 +254,12 @@ cp_rectangle cp_lane_ahead_at(const cp_lane_ahead *ahead, double way_m, double l
     double yaw_rad = atan2(axis_m.y, axis_m.x);
     cp_vec2 half_m = cp_vec2_scale(cp_vec2_heading(yaw_rad), 0.5 * length_m);
     return (cp_rectangle){cp_vec2_sub(front_m, half_m), yaw_rad, length_m, width_m};
+}
+
+cp_vec2 cp_lane_ahead_middle(const cp_lane_ahead *ahead, double way_m, double length_m)
+{
+    return cp_vec2_scale(cp_vec2_add(point_at(ahead, way_m), point_at(ahead, way_m - length_m)),
+                         0.5);
 }
 
 void cp_lane_ahead_place(const cp_lane_ahead *ahead, double way_m, cp_vehicle_state *state)

@@ -44,6 +44,10 @@ bool cp_lane_ahead_lay(const cp_lane_map *map, const cp_vehicle_motion *motion, 
 cp_rectangle cp_lane_ahead_at(const cp_lane_ahead *ahead, double way_m, double length_m,
                               double width_m);
 
+/* The middle between front and rear there: nearer than half a metre to the centre of the rectangle
+ * of anything that keeps to a road, and told a good deal faster. */
+cp_vec2 cp_lane_ahead_middle(const cp_lane_ahead *ahead, double way_m, double length_m);
+
 /* Lane, place along it and height of the front there: of state those three are set, lengths stay.
  */
 void cp_lane_ahead_place(const cp_lane_ahead *ahead, double way_m, cp_vehicle_state *state);

@@ -106,6 +106,18 @@ static bool is_in_time(const cp_vehicle_motion *own, const cp_vehicle_motion *ot
     return cp_front_distance_m2(own, other) <= reach_m * reach_m;
 }
 
+// Whether the one behind in the same lane is no faster than the one ahead: most pairs in traffic,
+// and they do not meet. For vehicles whose places are known.
+static bool are_parting(const cp_vehicle_state *own, const cp_vehicle_state *other)
+{
+    if (own->lane != other->lane || cos(own->yaw_rad - other->yaw_rad) < 0.0)
+        return false;
+    bool is_ahead = own->lane_position_m > other->lane_position_m;
+    const cp_vehicle_state *ahead = is_ahead ? own : other, *behind = is_ahead ? other : own;
+    return ahead->lane_position_m - ahead->length_m > behind->lane_position_m &&
+           ahead->speed_m_s >= behind->speed_m_s;
+}
+
 static bool is_detectable(const cp_lookout *lookout, uint32_t own, uint32_t target)
 {
     double probability_1 = lookout->settings.detection_probability_1;
@@ -381,7 +393,8 @@ static cp_status judge(const cp_lookout *lookout, sight *seen, encounter *pair, 
     const cp_lookout_settings *settings = &lookout->settings;
     *threatens = false;
     if (cp_turns_too_fast(seen->own) || cp_turns_too_fast(seen->target) ||
-        !is_in_time(seen->own, seen->target, settings->ttc_s))
+        !is_in_time(seen->own, seen->target, settings->ttc_s) ||
+        (settings->view != NULL && are_parting(&seen->own->after, &seen->target->after)))
         return CP_OK;
     cp_status status = look_at_ways(lookout, seen, error);
     *pair = encounter_inside(seen, 1.0);
@@ -440,7 +453,8 @@ cp_status cp_lookout_is_danger(const cp_lookout *lookout, const cp_vehicle_motio
         sight seen = {.own = own,
                       .target = cp_traffic_motion_of(lookout->traffic, tracks.track[k].vehicle)};
         if (seen.target == NULL || !tracks.track[k].is_detectable ||
-            !is_in_time(own, seen.target, horizon_s))
+            !is_in_time(own, seen.target, horizon_s) ||
+            (settings->view != NULL && are_parting(&own->after, &seen.target->after)))
             continue;
         status = look_at_ways(lookout, &seen, error);
         encounter pair = encounter_inside(&seen, 1.0);

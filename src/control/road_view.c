@@ -20,6 +20,11 @@ typedef struct view_ways {
     cp_lane_ahead *way[2];
 } view_ways;
 
+static double length_of(cp_vec2 vector)
+{
+    return sqrt(cp_vec2_dot(vector, vector));
+}
+
 struct cp_road_view {
     const cp_traffic *traffic;
     const cp_lane_map *map; /* NULL: not read yet, or there is none */
@@ -144,7 +149,7 @@ cp_mover cp_mover_inside(const cp_vehicle_motion *motion, const cp_lane_ahead *w
                                    0.5 * mover.now.rectangle.length_m);
     cp_vec2 front_m = cp_vec2_add(mover.now.rectangle.centre_m, half_m);
     cp_vec2 after_m = {motion->after.front_x_m, motion->after.front_y_m};
-    mover.begin_m = -cp_vec2_length(cp_vec2_sub(after_m, front_m));
+    mover.begin_m = -length_of(cp_vec2_sub(after_m, front_m));
     return mover;
 }
 
@@ -152,16 +157,25 @@ cp_rectangle cp_mover_at(const cp_mover *mover, double time_s)
 {
     if (mover->way == NULL)
         return cp_moving_rectangle_at(&mover->now, time_s);
-    double speed_m_s = cp_vec2_length(mover->now.velocity_m_s);
+    double speed_m_s = length_of(mover->now.velocity_m_s);
     return cp_lane_ahead_at(mover->way, mover->begin_m + speed_m_s * time_s,
                             mover->now.rectangle.length_m, mover->now.rectangle.width_m);
+}
+
+// Nearer than half a metre to the centre of where it is then.
+static cp_vec2 middle_at(const cp_mover *mover, double time_s)
+{
+    if (mover->way == NULL)
+        return cp_moving_rectangle_at(&mover->now, time_s).centre_m;
+    double way_m = mover->begin_m + length_of(mover->now.velocity_m_s) * time_s;
+    return cp_lane_ahead_middle(mover->way, way_m, mover->now.rectangle.length_m);
 }
 
 // No point of its body is faster than this: front and rear keep its speed along the way, what lies
 // beside the axis turns with it, by at most twice the speed over the length.
 static double fastest_m_s(const cp_mover *mover)
 {
-    double speed_m_s = cp_vec2_length(mover->now.velocity_m_s);
+    double speed_m_s = length_of(mover->now.velocity_m_s);
     const cp_rectangle *body = &mover->now.rectangle;
     if (mover->way != NULL)
         return speed_m_s * (1.0 + body->width_m / body->length_m);
@@ -176,8 +190,8 @@ static double earliest_behind_s(const cp_mover *one, const cp_mover *other)
         return 0.0;
     const cp_way_point *front = &other->way->corner[other->way->front];
     double ahead_m = cp_lane_ahead_way_to_m(one->way, front->lane, front->lane_at_m);
-    double own_m_s = cp_vec2_length(one->now.velocity_m_s);
-    double its_m_s = cp_vec2_length(other->now.velocity_m_s);
+    double own_m_s = length_of(one->now.velocity_m_s);
+    double its_m_s = length_of(other->now.velocity_m_s);
     double gap_m = ahead_m - other->now.rectangle.length_m - 1.0;
     if (!(gap_m > 0.0) || ahead_m == INFINITY)
         return 0.0;
@@ -187,7 +201,7 @@ static double earliest_behind_s(const cp_mover *one, const cp_mover *other)
 // When SUMO takes it off the road.
 static double leaves_after_s(const cp_mover *mover)
 {
-    double speed_m_s = cp_vec2_length(mover->now.velocity_m_s);
+    double speed_m_s = length_of(mover->now.velocity_m_s);
     if (mover->way == NULL || mover->way->ends_m == INFINITY || !(speed_m_s > 0.0))
         return INFINITY;
     return (mover->way->ends_m - mover->begin_m) / speed_m_s;
@@ -202,14 +216,17 @@ double cp_mover_ttc_s(const cp_mover *one, const cp_mover *other, double horizon
     if (!(bound_m_s > 0.0) || earliest_behind_s(one, other) > horizon_s)
         return INFINITY;
     horizon_s = fmin(horizon_s, fmin(leaves_after_s(one), leaves_after_s(other)));
-    // Conservative advancement: the gap closes by no more than the bound.
+    // Conservative advancement: the gap closes by no more than the bound. Far apart, the circles
+    // round the middles tell enough of it.
+    double reach_m = cp_rectangle_half_diagonal_m(&one->now.rectangle) +
+                     cp_rectangle_half_diagonal_m(&other->now.rectangle);
     while (time_s <= horizon_s) {
-        cp_rectangle there = cp_mover_at(one, time_s), other_there = cp_mover_at(other, time_s);
-        cp_vec2 apart_m = cp_vec2_sub(other_there.centre_m, there.centre_m);
-        double gap_m = cp_vec2_length(apart_m) - cp_rectangle_half_diagonal_m(&there) -
-                       cp_rectangle_half_diagonal_m(&other_there);
-        if (gap_m < 1.0)
+        double gap_m = length_of(cp_vec2_sub(middle_at(one, time_s), middle_at(other, time_s))) -
+                       reach_m - 1.0;
+        if (gap_m < 0.5) {
+            cp_rectangle there = cp_mover_at(one, time_s), other_there = cp_mover_at(other, time_s);
             gap_m = cp_rectangle_separation(&there, &other_there);
+        }
         if (gap_m <= contact_m)
             return time_s;
         time_s += gap_m / bound_m_s;
@@ -226,7 +243,7 @@ static cp_status place_at(const cp_road_view *view, const cp_vehicle_motion *mot
     *state = motion->after;
     if (mover->way == NULL)
         return cp_traffic_place(view->traffic, state, error);
-    double speed_m_s = cp_vec2_length(mover->now.velocity_m_s);
+    double speed_m_s = length_of(mover->now.velocity_m_s);
     cp_lane_ahead_place(mover->way, mover->begin_m + speed_m_s * time_s, state);
     return CP_OK;
 }

@@ -191,3 +191,35 @@ cp_status cp_xml_number(const cp_xml_element *element, const char *name, double 
                        element->line, name, element->name, smallest, largest, text);
     return CP_OK;
 }
+
+cp_status cp_xml_time(const cp_xml_element *element, const char *name, double *time_s,
+                      cp_error *error)
+{
+    static const double UNIT_S[] = {1.0, 60.0, 3600.0, 86400.0};
+    const char *text = NULL;
+    double part[4];
+    int parts = 0;
+    cp_status status = cp_xml_text(element, name, &text, error);
+    if (status != CP_OK)
+        return status;
+    if (strchr(text, ':') == NULL)
+        return cp_xml_number(element, name, -HUGE_VAL, HUGE_VAL, time_s, error);
+    for (const char *c = text; parts < 4;) {
+        char *end = NULL;
+        part[parts] = strtod(c, &end);
+        if (end == c || !(part[parts] >= 0.0) || (*end != ':' && *end != '\0'))
+            break;
+        parts++;
+        if (*end == '\0') {
+            *time_s = 0.0;
+            for (int k = 0; k < parts; k++)
+                *time_s += part[k] * UNIT_S[parts - 1 - k];
+            return CP_OK;
+        }
+        c = end + 1;
+    }
+    return cp_fail(error, CP_BAD_INPUT,
+                   "%s:%zu: %s of <%s> must be a time in s or [days:]hours:minutes:seconds, found "
+                   "'%s'",
+                   element->path, element->line, name, element->name, text);
+}

@@ -46,6 +46,11 @@ const char *cp_xml_attribute(const cp_xml_element *element, const char *name);
 CP_MUST_CHECK cp_status cp_xml_text(const cp_xml_element *element, const char *name,
                                     const char **text, cp_error *error);
 
+/* An attribute as a time in s: a number, or [days:]hours:minutes:seconds as SUMO writes it with
+ * --human-readable-time. Error: CP_BAD_INPUT. */
+CP_MUST_CHECK cp_status cp_xml_time(const cp_xml_element *element, const char *name, double *time_s,
+                                    cp_error *error);
+
 /* An attribute as a finite number, the whole text, in [smallest, largest]. Error: CP_BAD_INPUT. */
 CP_MUST_CHECK cp_status cp_xml_number(const cp_xml_element *element, const char *name,
                                       double smallest, double largest, double *value,

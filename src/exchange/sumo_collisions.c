@@ -3,38 +3,46 @@
 
 #include "core/xml_file.h"
 
-#include <math.h>
 #include <search.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* A pair of vehicles and where it stands in the list. */
+typedef struct known_pair {
+    size_t index;
+    char text[]; /* "smaller id\1larger id" */
+} known_pair;
+
 typedef struct reading {
     cp_collision_list *list;
-    void *pairs; /* texts "smaller id\1larger id", a binary tree */
+    void *pairs; /* known_pairs, a binary tree */
 } reading;
 
-static int compare_texts(const void *one, const void *other)
+static int compare_pairs(const void *one, const void *other)
 {
-    return strcmp(one, other);
+    return strcmp(((const known_pair *)one)->text, ((const known_pair *)other)->text);
 }
 
-// Whether the pair is new; then it is known from now on.
-static cp_status remember_pair(reading *self, const char *one, const char *other, bool *is_new,
+// Where the pair stands in the list: behind its end when it is new, which it is not from now on.
+static cp_status remember_pair(reading *self, const char *one, const char *other, size_t *index,
                                cp_error *error)
 {
     bool in_order = strcmp(one, other) < 0;
     size_t size = strlen(one) + strlen(other) + 2;
-    char *key = malloc(size);
-    if (key == NULL)
+    known_pair *pair = malloc(sizeof *pair + size);
+    if (pair == NULL)
         return cp_fail_memory(error, "collisions");
-    snprintf(key, size, "%s\1%s", in_order ? one : other, in_order ? other : one);
-    void **place = tsearch(key, &self->pairs, compare_texts);
-    *is_new = place != NULL && *(char **)place == key;
-    if (!*is_new)
-        free(key);
-    return place != NULL ? CP_OK : cp_fail_memory(error, "collisions");
+    pair->index = self->list->count;
+    snprintf(pair->text, size, "%s\1%s", in_order ? one : other, in_order ? other : one);
+    known_pair **place = tsearch(pair, &self->pairs, compare_pairs);
+    if (place == NULL || *place != pair)
+        free(pair);
+    if (place == NULL)
+        return cp_fail_memory(error, "collisions");
+    *index = (*place)->index;
+    return CP_OK;
 }
 
 static cp_status append(cp_collision_list *list, const cp_listed_collision *collision,
@@ -83,9 +91,8 @@ static cp_status visit(void *context, const cp_xml_element *element, cp_error *e
         return CP_OK;
     self->list->reports++;
     cp_listed_collision collision = {.line = element->line};
-    bool is_new = false;
-    cp_status status =
-        cp_xml_number(element, "time", -INFINITY, INFINITY, &collision.time_s, error);
+    size_t index = 0;
+    cp_status status = cp_xml_time(element, "time", &collision.time_s, error);
     if (status == CP_OK)
         status = copy(element, "collider", &collision.id[0], error);
     if (status == CP_OK)
@@ -96,13 +103,16 @@ static cp_status visit(void *context, const cp_xml_element *element, cp_error *e
         status = copy(element, "victimType", &collision.type[1], error);
     if (status == CP_OK)
         status = copy(element, "type", &collision.kind, error);
-    if (status == CP_OK && strcmp(collision.id[0], collision.id[1]) == 0)
-        status = cp_fail(error, CP_BAD_INPUT, "%s:%zu: collider and victim are both '%s'",
-                         element->path, element->line, collision.id[0]);
-    if (status == CP_OK)
-        status = remember_pair(self, collision.id[0], collision.id[1], &is_new, error);
-    if (status == CP_OK && is_new)
+    bool is_itself = status == CP_OK && strcmp(collision.id[0], collision.id[1]) == 0;
+    self->list->with_themselves += is_itself;
+    if (status == CP_OK && !is_itself)
+        status = remember_pair(self, collision.id[0], collision.id[1], &index, error);
+    bool is_new = status == CP_OK && !is_itself && index == self->list->count;
+    collision.last_s = collision.time_s;
+    if (is_new)
         status = append(self->list, &collision, error);
+    else if (status == CP_OK && !is_itself)
+        self->list->collision[index].last_s = collision.time_s;
     if (status != CP_OK || !is_new)
         destroy_collision(&collision);
     return status;
@@ -114,9 +124,9 @@ cp_status cp_sumo_collisions_read(const char *path, cp_collision_list *list, cp_
     reading self = {.list = list};
     cp_status status = cp_xml_read(path, "collisions", visit, &self, error);
     while (self.pairs != NULL) {
-        char *key = *(char **)self.pairs;
-        tdelete(key, &self.pairs, compare_texts);
-        free(key);
+        known_pair *pair = *(known_pair **)self.pairs;
+        tdelete(pair, &self.pairs, compare_pairs);
+        free(pair);
     }
     if (status != CP_OK)
         cp_collision_list_destroy(list);

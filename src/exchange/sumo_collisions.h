@@ -11,6 +11,7 @@
 typedef struct cp_listed_collision {
     size_t line;   /* of the file */
     double time_s; /* end of the step of the first report */
+    double last_s; /* and of the last one: what SUMO reports early by its minGap may touch later */
     char *id[2];   /* collider, victim; owned, as the next two */
     char *type[2];
     char *kind; /* SUMO's word: collision, frontal, junction */
@@ -19,7 +20,8 @@ typedef struct cp_listed_collision {
 typedef struct cp_collision_list {
     cp_listed_collision *collision; /* in order of first report */
     size_t count;
-    size_t reports; /* in the file: SUMO repeats a collision that lasts */
+    size_t reports;         /* in the file: SUMO repeats a collision that lasts */
+    size_t with_themselves; /* rows whose collider is the victim (trains in a loop): passed over */
 } cp_collision_list;
 
 /* Every pair of vehicles once, at its first report. Collisions with persons are left out and not

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/sumo_fcd.h"
 
+#include "core/log.h"
 #include "core/units.h"
 #include "core/xml_file.h"
 
@@ -73,7 +74,7 @@ static cp_status append(cp_fcd_track *track, cp_fcd_sample sample, cp_error *err
 static cp_status take_step(reading *self, const cp_xml_element *element, cp_error *error)
 {
     double before_s = self->time_s;
-    cp_status status = cp_xml_number(element, "time", -INFINITY, INFINITY, &self->time_s, error);
+    cp_status status = cp_xml_time(element, "time", &self->time_s, error);
     if (status != CP_OK)
         return status;
     double step_s = self->time_s - before_s;
@@ -85,11 +86,16 @@ static cp_status take_step(reading *self, const cp_xml_element *element, cp_erro
                        element->line, self->time_s, before_s);
     else if (self->steps == 1)
         self->record->step_length_s = step_s;
-    else if (fabs(step_s - self->record->step_length_s) > TIME_ROUNDING_S)
+    // Steps without vehicles may be left out (--fcd-output.skip-empty of later versions).
+    double skipped = self->steps > 1 ? round(step_s / self->record->step_length_s) - 1.0 : 0.0;
+    if (self->steps > 1 &&
+        (skipped < 0.0 || fabs(step_s - (skipped + 1.0) * self->record->step_length_s) >
+                              TIME_ROUNDING_S * (skipped + 1.0)))
         return cp_fail(error, CP_BAD_INPUT,
                        "%s:%zu: <timestep> must follow the one before after %g s as the first ones "
-                       "do, found %g s",
+                       "do, or a multiple of it, found %g s",
                        element->path, element->line, self->record->step_length_s, step_s);
+    self->steps += (size_t)skipped;
     self->steps++;
     return CP_OK;
 }
@@ -132,8 +138,9 @@ static cp_status take_vehicle(reading *self, const cp_xml_element *element, cp_e
     for (; status == CP_OK && low < self->wanted_count && strcmp(self->wanted[low].id, id) == 0;
          low++) {
         const wanted *found = &self->wanted[low];
-        double after_s = self->time_s - self->list->collision[found->collision].time_s;
-        if (after_s < -self->before_s || after_s > self->after_s)
+        const cp_listed_collision *listed = &self->list->collision[found->collision];
+        if (self->time_s < listed->time_s - self->before_s ||
+            self->time_s > fmax(listed->time_s, listed->last_s) + self->after_s)
             continue;
         status = cp_xml_number(element, "x", -1e9, 1e9, &sample.front_m.x, error);
         if (status == CP_OK)
@@ -196,6 +203,29 @@ static cp_status check_lengths(const char *path, const cp_fcd_record *record, cp
                    path, way_m, by_speed_m);
 }
 
+// Whether SUMO made every step that the record has, or more: collisions come at SUMO's own.
+static cp_status check_period(const char *path, const cp_collision_list *list,
+                              const cp_fcd_record *record, double first_s, cp_error *error)
+{
+    double step_s = record->step_length_s;
+    for (size_t k = 0; k < list->count; k++) {
+        double steps = (list->collision[k].time_s - first_s) / step_s;
+        if (fabs(steps - round(steps)) * step_s < 2.0 * TIME_ROUNDING_S)
+            continue;
+        if (step_s > CP_FCD_COARSEST_PERIOD_S)
+            return cp_fail(error, CP_BAD_INPUT,
+                           "%s: must hold SUMO's own steps, or one every %g s at least, found one "
+                           "every %g s and a collision at %g s in between (device.fcd.period): "
+                           "between them contacts come and go",
+                           path, CP_FCD_COARSEST_PERIOD_S, step_s, list->collision[k].time_s);
+        cp_log_warning("%s: holds one step every %g s, SUMO made more (a collision at %g s): "
+                       "contacts are between its steps as if vehicles went straight",
+                       path, step_s, list->collision[k].time_s);
+        return CP_OK;
+    }
+    return CP_OK;
+}
+
 cp_status cp_sumo_fcd_read(const char *path, const cp_collision_list *list, double before_s,
                            double after_s, cp_fcd_record *record, cp_error *error)
 {
@@ -224,7 +254,10 @@ cp_status cp_sumo_fcd_read(const char *path, const cp_collision_list *list, doub
     record->step_length_s = record->simulated_s / (double)(self.steps - 1);
     record->vehicle_km *= record->step_length_s;
     record->vehicle_h *= record->step_length_s;
-    return CP_OK;
+    status = check_period(path, list, record, self.first_s, error);
+    if (status != CP_OK)
+        cp_fcd_record_destroy(record);
+    return status;
 }
 
 void cp_fcd_record_destroy(cp_fcd_record *record)

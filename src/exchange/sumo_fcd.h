@@ -32,11 +32,14 @@ typedef struct cp_fcd_record {
     size_t departed; /* different vehicles in the file */
 } cp_fcd_record;
 
-/* Read a file: of each listed collision both vehicles from before_s before its report to after_s
- * after it. The caller destroys. Errors: CP_BAD_INPUT with file, line, attribute, also for time
- * steps that do not follow each other at one distance, fewer than two of them, or a file written
- * with
- * --fcd-output.geo; CP_NO_MEMORY. After an error the record is destroyed already. */
+#define CP_FCD_COARSEST_PERIOD_S 0.25
+
+/* Read a file: of each listed collision both vehicles from before_s before its first report to
+ * after_s after its last one. The caller destroys. A record coarser than SUMO's own steps is told,
+ * one coarser than CP_FCD_COARSEST_PERIOD_S refused. Errors: CP_BAD_INPUT with file, line,
+ * attribute, also for time steps that do not follow each other at one distance or multiples of it,
+ * fewer than two of them, or a file written with --fcd-output.geo; CP_NO_MEMORY. After an error the
+ * record is destroyed already. */
 CP_MUST_CHECK cp_status cp_sumo_fcd_read(const char *path, const cp_collision_list *list,
                                          double before_s, double after_s, cp_fcd_record *record,
                                          cp_error *error);

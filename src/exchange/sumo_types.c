@@ -13,24 +13,40 @@ typedef struct reading {
     bool inside; /* of a vType, as far as its parameters reach */
 } reading;
 
-static bool is_car(const char *vehicle_class)
+/* What SUMO 1.15 takes for a class whose vType leaves its size open, m
+ * (traci.vehicletype.getLength, getWidth, getHeight of a vType with nothing but its class). All
+ * others are as large as its car. */
+static const struct class_size {
+    const char *vehicle_class;
+    double length_m, width_m, height_m;
+} CLASS_SIZE[] = {
+    {"emergency", 6.5, 2.16, 2.86}, {"pedestrian", 0.215, 0.478, 1.719},
+    {"bus", 12, 2.5, 3.4},          {"coach", 14, 2.6, 4},
+    {"delivery", 6.5, 2.16, 2.86},  {"truck", 7.1, 2.4, 2.4},
+    {"trailer", 16.5, 2.55, 4},     {"motorcycle", 2.2, 0.9, 1.5},
+    {"moped", 2.1, 0.78, 1.7},      {"bicycle", 1.6, 0.65, 1.7},
+    {"tram", 22, 2.4, 3.2},         {"rail_urban", 109.5, 3, 3.6},
+    {"rail", 135, 2.84, 3.75},      {"rail_electric", 200, 2.95, 3.89},
+    {"rail_fast", 200, 2.95, 3.89}, {"ship", 17, 4, 4},
+};
+
+static struct class_size size_of_class(const char *vehicle_class)
 {
-    static const char *const CARS[] = {"passenger", "private", "taxi",     "evehicle",
-                                       "hov",       "vip",     "authority"};
-    for (size_t k = 0; k < sizeof CARS / sizeof *CARS; k++)
-        if (strcmp(CARS[k], vehicle_class) == 0)
-            return true;
-    return false;
+    for (size_t k = 0; k < sizeof CLASS_SIZE / sizeof *CLASS_SIZE; k++)
+        if (strcmp(CLASS_SIZE[k].vehicle_class, vehicle_class) == 0)
+            return CLASS_SIZE[k];
+    return (struct class_size){vehicle_class, CP_SUMO_CAR_LENGTH_M, CP_SUMO_CAR_WIDTH_M,
+                               CP_SUMO_CAR_HEIGHT_M};
 }
 
-// A size; a car's may be left to SUMO.
-static cp_status size_of(const cp_xml_element *element, const char *name, const char *vehicle_class,
-                         double of_car_m, double largest, double *value, cp_error *error)
+// A size; left open it is that of the class.
+static cp_status take_size(const cp_xml_element *element, const char *name, double of_class_m,
+                           double largest, double *value, cp_error *error)
 {
-    *value = of_car_m;
-    if (cp_xml_attribute(element, name) == NULL && is_car(vehicle_class))
-        return CP_OK;
-    return cp_xml_number(element, name, 0.1, largest, value, error);
+    *value = of_class_m;
+    return cp_xml_attribute(element, name) != NULL
+               ? cp_xml_number(element, name, 0.1, largest, value, error)
+               : CP_OK;
 }
 
 static void destroy_type(cp_vtype *type)
@@ -46,18 +62,15 @@ static cp_status fill(const cp_xml_element *element, cp_vtype *type, cp_error *e
     const char *id = NULL, *vehicle_class = cp_xml_attribute(element, "vClass");
     if (vehicle_class == NULL)
         vehicle_class = "passenger";
-    *type = (cp_vtype){.height_m = CP_SUMO_CAR_HEIGHT_M, .mass_kg = NAN};
+    *type = (cp_vtype){.mass_kg = NAN};
+    struct class_size size = size_of_class(vehicle_class);
     cp_status status = cp_xml_text(element, "id", &id, error);
     if (status == CP_OK)
-        status = size_of(element, "length", vehicle_class, CP_SUMO_CAR_LENGTH_M, 100.0,
-                         &type->length_m, error);
+        status = take_size(element, "length", size.length_m, 500.0, &type->length_m, error);
     if (status == CP_OK)
-        status = size_of(element, "width", vehicle_class, CP_SUMO_CAR_WIDTH_M, 10.0, &type->width_m,
-                         error);
-    if (!is_car(vehicle_class))
-        type->height_m = NAN;
-    if (status == CP_OK && cp_xml_attribute(element, "height") != NULL)
-        status = cp_xml_number(element, "height", 0.1, 10.0, &type->height_m, error);
+        status = take_size(element, "width", size.width_m, 10.0, &type->width_m, error);
+    if (status == CP_OK)
+        status = take_size(element, "height", size.height_m, 10.0, &type->height_m, error);
     if (status != CP_OK)
         return status;
     type->id = strdup(id);

@@ -31,8 +31,8 @@ typedef struct cp_vtypes {
 } cp_vtypes;
 
 /* Read the vTypes of one more file into zero-initialised or earlier filled types; the caller
- * destroys. A vType of another class than SUMO's cars must give length and width. Errors:
- * CP_BAD_INPUT with file, line, attribute; CP_NO_MEMORY. */
+ * destroys. A size that a vType leaves open is that of its class in SUMO 1.15. Errors: CP_BAD_INPUT
+ * with file, line, attribute; CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_vtypes_read(const char *path, cp_vtypes *types, cp_error *error);
 void cp_vtypes_destroy(cp_vtypes *types);
 

@@ -261,13 +261,17 @@ GROUP BY v.id, c.crash_type
 ORDER BY v.number, c.crash_type;
 
 -- SUMO's own reports of colliding pairs against ours: matched are crashes, explained have a verdict,
--- unexplained touched nobody.
+-- apart never touched by their outlines: SUMO compares places along a lane, and the nearest the two came
+-- stands beside it; unexplained are the rest.
 DROP VIEW IF EXISTS sumo_collision_check;
 CREATE VIEW sumo_collision_check AS
 SELECT s.name AS scenario, v.name AS variant, count(*) AS reported_by_sumo,
        sum(x.found_as = 'crash') AS matched,
        sum(x.found_as NOT IN ('crash', 'no_contact')) AS explained,
-       sum(x.found_as = 'no_contact') AS unexplained
+       sum(x.found_as = 'no_contact' AND coalesce(x.gap_m, 0.0) > 0.0) AS apart,
+       min(x.gap_m) FILTER (WHERE x.found_as = 'no_contact' AND x.gap_m > 0.0) AS apart_min_m,
+       max(x.gap_m) FILTER (WHERE x.found_as = 'no_contact' AND x.gap_m > 0.0) AS apart_max_m,
+       sum(x.found_as = 'no_contact' AND coalesce(x.gap_m, 0.0) <= 0.0) AS unexplained
 FROM sumo_collision AS x
 JOIN replication AS r ON r.id = x.replication_id
 JOIN scenario AS s ON s.id = r.scenario_id
@@ -301,8 +305,10 @@ ORDER BY s.number, c.reason, c.crash_type;
 
 -- The same in all beside the baseline: background crashes to expect in as many vehicle-km as the
 -- baseline has, which are the network's doing, not the drivers'; NULL before it has any.
--- is_negligible: none, or at most 5 % of the baseline's crashes and of its frontal ones; NULL when no
--- background was simulated.
+-- scale_1: the baseline's vehicle-km over those of the background. is_negligible: none, or at most 5 % of
+-- the baseline's crashes and of its frontal ones, by the expected numbers (status, compare and report
+-- judge by the upper bound of the exact 95 % interval, which SQL cannot tell); NULL when no background
+-- was simulated.
 DROP VIEW IF EXISTS background_by_scenario;
 CREATE VIEW background_by_scenario AS
 WITH background AS (
@@ -345,6 +351,7 @@ WITH background AS (
 SELECT scenario, scenario_id, runs, simulated_s, vehicle_km, vehicle_h, crashes, frontal_crashes,
        other_contacts, baseline_vehicle_km, baseline_crashes, baseline_frontal_crashes,
        crashes * scale_1 AS expected_crashes, frontal_crashes * scale_1 AS expected_frontal_crashes,
+       scale_1,
        CASE WHEN runs > 0 THEN
            crashes = 0 OR coalesce(crashes * scale_1 <= 0.05 * baseline_crashes
                                    AND frontal_crashes * scale_1 <= 0.05 * baseline_frontal_crashes,

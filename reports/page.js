@@ -863,8 +863,8 @@
     return list;
   }
 
-  const settings = (object, between) => Object.keys(object || {}).map(name => `${name}${between}${object[name]}`).join(", ");
-  const control = c => `${c.model || c.function} (${settings(c.parameters, " = ")}${c.equipment ? `; equipment ${settings(c.equipment, " ")}` : ""})`;
+  const settingsText = (object, between) => Object.keys(object || {}).map(name => `${name}${between}${object[name]}`).join(", ");
+  const control = c => `${c.model || c.function} (${settingsText(c.parameters, " = ")}${c.equipment ? `; equipment ${settingsText(c.equipment, " ")}` : ""})`;
 
   function design() {
     const parent = document.getElementById("design"), study = data.study;
@@ -892,7 +892,7 @@
       ["Programs", about.versions.map(v => `crashpulse ${v.crashpulse_version}, SUMO ${v.sumo_version} (${v.replications} replications)`).join("; ")],
       ["Vehicle models", about.vehicle_models.map(m => `${m.name}, SHA-256 ${m.hash}`).join("; ")],
       ["Scenarios", about.scenarios.map(s => s.sumocfg).join(", ")],
-      ["SUMO’s own reports", about.sumo_collision_check.map(c => `${c.scenario} / ${c.variant}: ${c.reported_by_sumo} colliding pairs, ${c.matched} found as crashes, ${c.explained} explained, ${c.unexplained} unexplained`).join("; ")]
+      ["SUMO’s own reports", about.sumo_collision_check.map(c => `${c.scenario} / ${c.variant}: ${c.reported_by_sumo} colliding pairs, ${c.matched} found as crashes, ${c.explained} explained, ${c.apart ? `${c.apart} with outlines ${c.apart_min_m.toFixed(2)} to ${c.apart_max_m.toFixed(2)} m apart, ` : ""}${c.unexplained} unexplained`).join("; ")]
     ]);
     const seeds = element(parent, "details");
     element(seeds, "summary", `Seeds and configuration hashes of ${about.replications.length} replications`);

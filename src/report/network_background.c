@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/network_background.h"
 
+#include "stats/rates.h"
 #include "store/query.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+// Up to this share of the baseline's crashes is no matter.
+#define NEGLIGIBLE_1 0.05
 
 // Columns of what is read.
 enum {
@@ -20,7 +25,8 @@ enum {
     EXPECTED_FRONTAL,
     BASELINE,
     BASELINE_FRONTAL,
-    NEGLIGIBLE,
+    FRONTAL,
+    SCALE,
     COLUMNS
 };
 
@@ -30,7 +36,9 @@ static const char SQL[] =
     "contacts FROM background_by_reason AS r WHERE r.scenario_id = b.scenario_id AND reason <> "
     "'crash' GROUP BY reason ORDER BY contacts DESC, reason)), "
     "vehicle_h, vehicle_km, expected_crashes, expected_frontal_crashes, baseline_crashes, "
-    "baseline_frontal_crashes, is_negligible FROM background_by_scenario AS b WHERE ?1 IS NULL OR "
+    "baseline_frontal_crashes, frontal_crashes, scale_1 FROM background_by_scenario AS b WHERE ?1 "
+    "IS "
+    "NULL OR "
     "scenario = ?1";
 
 static const char *plural(double count)
@@ -62,13 +70,51 @@ static char *text_of(const cp_cell *cell)
     return text;
 }
 
-static char *warning_of(const cp_cell *cell)
+/* Shares of the baseline's crashes. */
+typedef struct judgement {
+    double upper; /* crashes of the baseline's exposure that the networks' own doing may be */
+    double upper_frontal; /* likewise */
+    bool is_negligible;
+    bool is_too_short; /* what was found would be little, but it may be more */
+} judgement;
+
+// Few crashes in few hours clear nobody: what counts is how many there may be, by the upper bound
+// of the exact 95 % interval of a Poisson count.
+static judgement judge(const cp_cell *cell)
 {
-    char text[512];
+    double crashes = cell[CRASHES].real, frontal = cell[FRONTAL].real;
+    double baseline = cell[BASELINE].real, baseline_frontal = cell[BASELINE_FRONTAL].real;
+    bool is_comparable = cell[SCALE].type != CP_CELL_NULL && baseline > 0.0;
+    if (!is_comparable)
+        return (judgement){.is_negligible = crashes == 0.0};
+    judgement found = {.upper = cp_rate_garwood(crashes, 0.95).high * cell[SCALE].real,
+                       .upper_frontal = cp_rate_garwood(frontal, 0.95).high * cell[SCALE].real};
+    found.is_negligible =
+        found.upper <= NEGLIGIBLE_1 * baseline &&
+        (baseline_frontal == 0.0 || found.upper_frontal <= NEGLIGIBLE_1 * baseline_frontal);
+    found.is_too_short = !found.is_negligible && cell[EXPECTED].real <= NEGLIGIBLE_1 * baseline &&
+                         cell[EXPECTED_FRONTAL].real <= NEGLIGIBLE_1 * baseline_frontal;
+    return found;
+}
+
+static char *warning_of(const cp_cell *cell, const judgement *judged)
+{
+    char text[640];
     double baseline = cell[BASELINE].real, frontal = cell[BASELINE_FRONTAL].real;
     if (cell[EXPECTED].type == CP_CELL_NULL || baseline == 0.0)
         snprintf(text, sizeof text, "in %.200s cars crash without any driver error",
                  cell[SCENARIO].text);
+    else if (judged->is_too_short)
+        snprintf(
+            text, sizeof text,
+            "in %.200s up to %.2g of the baseline's %.0f crash%s (frontal: %.2g of %.0f) may be "
+            "the network's doing, not the drivers': what was simulated without driver errors is "
+            "too short to tell (95 %%), some %.2g times as much without another crash would "
+            "(background: duration_s)",
+            cell[SCENARIO].text, fmin(judged->upper, baseline), baseline,
+            baseline == 1.0 ? "" : "es", fmin(judged->upper_frontal, frontal), frontal,
+            fmax(judged->upper / baseline, frontal > 0.0 ? judged->upper_frontal / frontal : 0.0) /
+                NEGLIGIBLE_1);
     else
         snprintf(
             text, sizeof text,
@@ -90,16 +136,17 @@ static cp_status read_row(void *context, const cp_row *row, cp_error *error)
     backgrounds->row = larger;
     cp_network_background *added = &larger[backgrounds->count++];
     *added = (cp_network_background){.scenario = strdup(cell[SCENARIO].text),
-                                     .is_known = cell[RUNS].integer > 0,
-                                     .is_negligible = cell[NEGLIGIBLE].integer != 0};
+                                     .is_known = cell[RUNS].integer > 0};
     if (!added->scenario)
         return cp_fail_memory(error, "backgrounds");
     if (!added->is_known)
         return CP_OK;
     backgrounds->known++;
+    judgement judged = judge(cell);
+    added->is_negligible = judged.is_negligible;
     added->text = text_of(cell);
     if (!added->is_negligible)
-        added->warning = warning_of(cell);
+        added->warning = warning_of(cell, &judged);
     bool good = added->text && (added->is_negligible || added->warning);
     return good ? CP_OK : cp_fail_memory(error, "backgrounds");
 }

@@ -13,12 +13,13 @@
 
 typedef struct cp_network_background {
     char *scenario;
-    bool is_known; /* it was simulated */
-    bool is_negligible;
-    char *text;    /* "0 crashes and 12 other contacts (graze 10, clipped_waiting 2) in 45.2
-                      vehicle-hours" */
-    char *warning; /* "... of the baseline's 55 crashes are the network's doing"; NULL if negligible
-                      or not known */
+    bool is_known;      /* it was simulated */
+    bool is_negligible; /* at most 5 % of the baseline's crashes, by the upper bound of the exact 95
+                           % interval of what was found */
+    char *text;         /* "0 crashes and 12 other contacts (graze 10, clipped_waiting 2) in 45.2
+                           vehicle-hours" */
+    char *warning; /* "... of the baseline's 55 crashes are the network's doing", or may be; NULL if
+                      negligible or not known */
 } cp_network_background;
 
 typedef struct cp_network_backgrounds {

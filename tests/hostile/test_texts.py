@@ -17,6 +17,7 @@ parser = argparse.ArgumentParser()
 parser.add_argument("--crashpulse", required=True)
 parser.add_argument("--db", required=True, help="a study's database")
 parser.add_argument("--network", required=True, help="folder of the crossing")
+parser.add_argument("--few", action="store_true", help="every fourth name")
 a = parser.parse_args()
 
 NAMES = ("`touch owned`", "$(touch owned)", "x\"; system \"touch owned\"; #", "'; touch owned; '",
@@ -51,7 +52,7 @@ def check_terminal(words, out):
 shown = 0
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
-    for hostile in NAMES:
+    for hostile in NAMES[::4] if a.few else NAMES:
         # One row of each table takes the name.
         shutil.copy(a.db, folder / "study.db")
         connection = sqlite3.connect(folder / "study.db")

@@ -165,14 +165,20 @@ static cp_status print_contrasts(const cp_study_data *data, const cp_comparison 
     return status;
 }
 
-// A paragraph broken at spaces after at most 79 characters.
+// Paragraphs, one a line of text, broken at spaces after at most 79 characters.
 static void print_wrapped(const char *raw, FILE *file)
 {
     size_t column = 0, room = 4 * strlen(raw) + 1;
     char *safe = cp_memory_or_end(room, "a paragraph");
-    const char *text = cp_text_for_terminal(raw, "", safe, room);
+    const char *text = cp_text_for_terminal(raw, "\n", safe, room);
     while (*text) {
-        size_t length = strcspn(text, " "), width = 0;
+        if (*text == '\n') {
+            fputc('\n', file);
+            column = 0;
+            text++;
+            continue;
+        }
+        size_t length = strcspn(text, " \n"), width = 0;
         for (size_t k = 0; k < length; k++)
             width += ((unsigned char)text[k] & 0xc0) != 0x80;
         if (column > 0 && column + 1 + width > 79) {

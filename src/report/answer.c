@@ -122,7 +122,7 @@ static void write_severity(FILE *out, const cp_study_data *data, const cp_compar
     const char *treatment = data->variant[c->variant].name;
     const char *baseline = data->variant[comparison->baseline].name;
     if (isnan(s->cliffs_delta)) {
-        fputs("Its OLC cannot be compared: no scenario has vehicles with an OLC in both. ", out);
+        fputs("Its OLC cannot be compared: no scenario has vehicles with an OLC in both.\n", out);
         return;
     }
     fputs("Median OLC of the frontally struck vehicles", out);
@@ -161,7 +161,7 @@ static void write_severity(FILE *out, const cp_study_data *data, const cp_compar
             fprintf(out, "; %zu of %s without a simulated crash", figures[g]->simulation_failed,
                     name[g]);
     }
-    fputs("). ", out);
+    fputs(").\n", out);
 }
 
 static void write_contrast(FILE *out, const cp_study_data *data, const cp_comparison *comparison,
@@ -221,7 +221,7 @@ static void write_pairs(FILE *out, const cp_study_data *data, const cp_counterfa
     }
     if (c->crashes > c->valid)
         fprintf(out, "; %zu more could not be judged", c->crashes - c->valid);
-    fprintf(out, ". Of the %zu valid ones inside the validated range with %s, %zu were avoided. ",
+    fprintf(out, ". Of the %zu valid ones inside the validated range with %s, %zu were avoided.\n",
             c->inside_valid, "the baseline", c->inside_outcome[CP_OUTCOME_AVOIDED]);
 }
 
@@ -308,6 +308,7 @@ cp_status cp_comparison_answer(const cp_study_data *data, const cp_comparison *c
         write_contrast(out, data, comparison, &comparison->contrast[k]);
     for (size_t k = 0; k < comparison->counterfactual_count; k++)
         write_pairs(out, data, &comparison->counterfactual[k]);
+    // A paragraph each, then one on what it all rests on.
     fputs("In all: ", out);
     write_counts(out, data, comparison);
     if (data->unfinished > 0)

@@ -4,7 +4,8 @@
 
 #include "report/comparison.h"
 
-/* A comparison in one sentence: what changed, how many crashes it rests on and how many of them are
+/* A comparison in a few sentences: a paragraph (ended by a new line) for each treatment, what
+ * changed and what could not be compared; then how many crashes it rests on, how many of them are
  * front-front inside the validated range, and the driver errors the rates are conditional on.
  * UTF-8; the caller frees. Error: CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_comparison_answer(const cp_study_data *data,

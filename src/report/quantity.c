@@ -443,7 +443,8 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
     for (int r = CP_NULL_REPRODUCED + 1; r <= CP_NULL_NOT_REPRODUCED; r++)
         add(&w, named(name, "invalid_%s", cp_null_status_text((cp_null_status)r)), NULL, 0,
             counted(figures->reason[r]));
-    add(&w, "new_crashes", "new crashes between others (vanished ones not counted)", 0, exactly(figures->new_crashes));
+    add(&w, "new_crashes", "new crashes between others (vanished ones not counted)", 0,
+        exactly(figures->new_crashes));
     static const char *const OLC[] = {"OLC, g, all valid pairs (avoided = 0 g)",
                                       "OLC, g, conditional on crashing"};
     static const char *const SPEED[] = {"closing speed, km/h, all valid pairs (avoided = 0)",

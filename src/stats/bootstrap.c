@@ -245,6 +245,10 @@ static double reach(const plan *p)
     for (size_t g = 0; g < p->group_count; g++) {
         double own = degrees_of_freedom(&p->group[g]), count = (double)p->group[g].count;
         double informative = (double)p->resampling->informative[g];
+        // Pairs are drawn together: the group with fewer that say anything is what counts.
+        double other = (double)p->resampling->informative[1];
+        if (p->resampling->paired && other > 0.0 && other < informative)
+            informative = other;
         if (informative > 0.0 && informative < count) {
             own = fmax(1.0, own - (count - informative));
             count = informative;

@@ -46,7 +46,8 @@ static double exact_way_m(const two_cars *e, const cp_brake *brake, double time_
 static bool is_threat(const two_cars *e, double way_m, double speed_m_s, double time_s)
 {
     const double fine_s = 1e-3;
-    double closest_m = 0.0; // nobody comes nearer in a fine step than both drive and the target turns
+    double closest_m =
+        0.0; // nobody comes nearer in a fine step than both drive and the target turns
     for (double later_s = 0.0; later_s < e->ttc_s; later_s += fine_s) {
         if (closest_m > 0.0) {
             closest_m -= 2.0 * (speed_m_s + e->target_m_s) * fine_s;
@@ -75,10 +76,8 @@ static double exact_impact_m_s(const two_cars *e, double *impact_s, double *requ
         if (speed_m_s <= 0.0)
             return NAN;
         double way_m = exact_way_m(e, &brake, time_s);
-        cp_rectangle own = {{way_m - 0.5 * TWO_CARS_LENGTH_M, 0.0},
-                            0.0,
-                            TWO_CARS_LENGTH_M,
-                            TWO_CARS_WIDTH_M};
+        cp_rectangle own = {
+            {way_m - 0.5 * TWO_CARS_LENGTH_M, 0.0}, 0.0, TWO_CARS_LENGTH_M, TWO_CARS_WIDTH_M};
         cp_rectangle target = two_cars_target_at(e, time_s);
         if (cp_rectangle_separation(&own, &target) <= 0.0) {
             *impact_s = time_s;

@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -84,6 +85,13 @@ char *cp_text_for_terminal(const char *text, const char *keep, char *result, siz
     if (size > 0)
         result[used] = '\0';
     return result;
+}
+
+char *cp_text_copy_plain(const char *text)
+{
+    size_t room = 4 * strlen(text) + 1;
+    char *copy = malloc(room);
+    return copy != NULL ? cp_text_for_terminal(text, "", copy, room) : NULL;
 }
 
 void cp_text_print(FILE *file, const char *text, const char *keep)

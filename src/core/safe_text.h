@@ -21,6 +21,9 @@ bool cp_text_is_plain(const char *text);
  * Returns result. */
 char *cp_text_for_terminal(const char *text, const char *keep, char *result, size_t size);
 
+/* A copy of the whole of it, without keep: one line. The caller frees. NULL when memory is gone. */
+char *cp_text_copy_plain(const char *text);
+
 /* The same straight to a file, whatever its length. */
 void cp_text_print(FILE *file, const char *text, const char *keep);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/network_background.h"
 
+#include "core/safe_text.h"
 #include "stats/rates.h"
 #include "store/query.h"
 
@@ -125,6 +126,14 @@ static char *warning_of(const cp_cell *cell, const judgement *judged)
     return strdup(text);
 }
 
+// A made text with what names brought along made plain. Takes text; NULL without memory.
+static char *plain(char *text)
+{
+    char *copy = text != NULL ? cp_text_copy_plain(text) : NULL;
+    free(text);
+    return copy;
+}
+
 static cp_status read_row(void *context, const cp_row *row, cp_error *error)
 {
     cp_network_backgrounds *backgrounds = context;
@@ -135,7 +144,7 @@ static cp_status read_row(void *context, const cp_row *row, cp_error *error)
         return cp_fail_memory(error, "backgrounds");
     backgrounds->row = larger;
     cp_network_background *added = &larger[backgrounds->count++];
-    *added = (cp_network_background){.scenario = strdup(cell[SCENARIO].text),
+    *added = (cp_network_background){.scenario = cp_text_copy_plain(cell[SCENARIO].text),
                                      .is_known = cell[RUNS].integer > 0};
     if (!added->scenario)
         return cp_fail_memory(error, "backgrounds");
@@ -144,9 +153,9 @@ static cp_status read_row(void *context, const cp_row *row, cp_error *error)
     backgrounds->known++;
     judgement judged = judge(cell);
     added->is_negligible = judged.is_negligible;
-    added->text = text_of(cell);
+    added->text = plain(text_of(cell));
     if (!added->is_negligible)
-        added->warning = warning_of(cell, &judged);
+        added->warning = plain(warning_of(cell, &judged));
     bool good = added->text && (added->is_negligible || added->warning);
     return good ? CP_OK : cp_fail_memory(error, "backgrounds");
 }

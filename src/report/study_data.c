@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/study_data.h"
 
+#include "core/safe_text.h"
 #include "report/query_json.h"
 #include "report/study_places.h"
 #include "store/query.h"
@@ -32,7 +33,7 @@ static cp_status grow(void **array, size_t count, size_t *room, size_t size, cp_
 
 static cp_status copy_text(const char *text, char **copy, cp_error *error)
 {
-    *copy = strdup(text);
+    *copy = cp_text_copy_plain(text); // a name of several lines would break the words around it
     return *copy ? CP_OK : cp_fail_memory(error, "a name");
 }
 

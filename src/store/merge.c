@@ -158,8 +158,7 @@ static cp_status take_results(cp_store *store, cp_error *error)
     int row = 0;
     cp_status status = cp_statement_prepare(store, "reading the schema", RESULT_TABLES, &s, error);
     while (status == CP_OK && (status = cp_statement_row(&s, &row, error)) == CP_OK && row) {
-        const char *owner =
-            sqlite3_column_int(s.handle, 1) ? "crash_id / 16384" : "replication_id";
+        const char *owner = sqlite3_column_int(s.handle, 1) ? "crash_id / 16384" : "replication_id";
         status = run_sql(store, error,
                          "INSERT INTO main.\"%w\" SELECT * FROM part.\"%w\" WHERE %s IN (SELECT id "
                          "FROM temp.taken)",

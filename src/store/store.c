@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #define BUSY_TIMEOUT_MS 60000
@@ -224,9 +225,13 @@ static cp_status check_version(cp_store *store, cp_store_mode mode, bool *views,
 {
     int version = 0;
     *views = false;
-    cp_status status = cp_schema_check(store, &version, error);
+    // In one transaction: another process may bring it to a later version meanwhile.
+    cp_status status = cp_store_execute(store, "reading", "BEGIN", error);
+    if (status == CP_OK)
+        status = cp_schema_check(store, &version, error);
     if (status == CP_OK && version > 0)
         status = cp_schema_match(store, version, views, error);
+    sqlite3_exec(store->handle, "ROLLBACK", NULL, NULL, NULL);
     if (status != CP_OK || version == CP_STORE_VERSION)
         return status;
     if (version == 0 && mode != CP_STORE_CREATE)
@@ -312,6 +317,23 @@ static cp_status set_limits(cp_store *store, cp_store_mode mode, cp_error *error
     return CP_OK;
 }
 
+// WAL mode. SQLite does not wait for others when it changes the mode: it is tried as long as for
+// any other lock.
+static cp_status keep_log(cp_store *store, cp_error *error)
+{
+    enum { PAUSE_MS = 20 };
+    const struct timespec pause = {.tv_nsec = PAUSE_MS * 1000000L};
+    cp_status status = CP_BUSY;
+    for (int waited_ms = 0; status == CP_BUSY && waited_ms < BUSY_TIMEOUT_MS;
+         waited_ms += PAUSE_MS) {
+        status = cp_store_execute(store, "setting it up",
+                                  "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL", error);
+        if (status == CP_BUSY)
+            nanosleep(&pause, NULL);
+    }
+    return status;
+}
+
 static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *error)
 {
     struct stat entry;
@@ -334,8 +356,7 @@ static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *erro
     if (status == CP_OK)
         status = check_version(store, mode, &views, error);
     if (status == CP_OK && mode != CP_STORE_READ)
-        status = cp_store_execute(store, "setting it up",
-                                  "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL", error);
+        status = keep_log(store, error);
     if (status == CP_OK)
         status = cp_schema_refresh_views(store, views, mode != CP_STORE_READ, error);
     if (status == CP_OK)

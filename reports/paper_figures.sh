@@ -4,14 +4,14 @@
 # of its car, as pages, into FOLDER (default build/paper_figures), each with the command that draws it. The program stands in build/, or is named
 # by CRASHPULSE.
 # The curves of the paper's finite-element model are not public: where the paper lays its surrogate
-# over them, these pages lay two parameter sets over each other, the shipped one and the one fitted from
-# scratch for the cross-validation.
+# over them, these pages lay two parameter sets over each other, the shipped one and the mid-size car
+# fitted to the middle of real tests.
 set -eu
 cd "$(dirname "$0")/.."
 folder=${1:-build/paper_figures}
 crashpulse=${CRASHPULSE:-build/crashpulse}
 accord=db/vehicles/honda_accord_2014.yaml
-scratch=db/vehicles/cross_validation/honda_accord_2014_scratch.yaml
+second=db/vehicles/mid_size.yaml
 mkdir -p "$folder"
 
 # Configurations of smallest and largest error in OLC: "speed offset angle".
@@ -32,8 +32,8 @@ crash_page() {
     "$crashpulse" "$@" >/dev/null
 }
 
-crash_page "$best" figure_7_best.html --overlay-vehicle "$scratch"
-crash_page "$worst" figure_7_worst.html --overlay-vehicle "$scratch"
+crash_page "$best" figure_7_best.html --overlay-vehicle "$second"
+crash_page "$worst" figure_7_worst.html --overlay-vehicle "$second"
 # The same from above at three moments: #t=0, #t=100 and #t=200 behind the page's address.
-crash_page "$worst" figure_8.html --overlay-vehicle "$scratch" --duration 200
+crash_page "$worst" figure_8.html --overlay-vehicle "$second" --duration 200
 crash_page "56 0 0" figure_12.html --against "$accord" --overlay-against barrier

@@ -30,14 +30,15 @@ KINDS = {
     LENGTH: "longitudinal_length_m longitudinal_collapse_begin_m longitudinal_collapse_end_m "
             "crash_box_length_m crash_box_collapse_begin_m crash_box_collapse_end_m "
             "engine_gap_front_m engine_gap_firewall_m corner_gap_m corner_collapse_begin_m "
-            "corner_collapse_end_m upper_gap_m upper_collapse_begin_m upper_collapse_end_m",
-    WIDTH: "longitudinal_y_m cross_member_half_width_m engine_width_m corner_width_m",
+            "corner_collapse_end_m bumper_stroke_m upper_gap_m upper_collapse_begin_m upper_collapse_end_m",
+    WIDTH: "longitudinal_y_m cross_member_half_width_m engine_width_m corner_width_m corner_side_m",
     MASS: "longitudinal_mass_kg crash_box_mass_kg cross_member_mass_kg engine_mass_kg "
           "contact_stiffness_kn_m body_stiffness_kn_m",
-    FORCE: "longitudinal_collapse_begin_kn longitudinal_collapse_end_kn crash_box_collapse_begin_kn "
+    FORCE: "longitudinal_collapse_begin_kn longitudinal_collapse_middle_kn "
+           "longitudinal_collapse_end_kn bumper_kn corner_side_kn cell_edge_kn cell_kn crash_box_collapse_begin_kn "
            "crash_box_collapse_end_kn engine_mount_yield_kn corner_collapse_begin_kn "
            "corner_collapse_end_kn upper_collapse_begin_kn upper_collapse_end_kn "
-           "engine_cradle_kn engine_mount_damping_kn_s_m member_damping_kn_s_m",
+           "engine_cradle_kn engine_mount_damping_kn_s_m",
     MOMENT: "longitudinal_bending_kn_m cross_member_bending_kn_m",
     SLOPE: "engine_mount_kn_m firewall_stiffness_kn_m stop_stiffness_kn_m",
 }
@@ -58,13 +59,17 @@ SCATTER = {
 }
 
 
+SMALLEST = {}  # of every parameter, from the table of the vehicle model
+
+
 def base_vehicle(path):
     """Name of the base and all its parameters: {name: (unit, value)}; standard where not named."""
     header = (HERE.parent.parent / "src/crash/vehicle_model.h").read_text()
-    table = re.findall(r'X\((\w+), "([^"]*)", ([-\d.]+),', header.replace("\\\n", " "))
-    values = {name: (unit, float(value)) for name, unit, value in table}
+    table = re.findall(r'X\((\w+), "([^"]*)", ([-\d.]+), ([-\d.]+),', header.replace("\\\n", " "))
+    values = {name: (unit, float(value)) for name, unit, value, _ in table}
+    SMALLEST.update({name: float(smallest) for name, _, _, smallest in table})
     text = re.sub(r"#.*", "", path.read_text())
-    for name, value in re.findall(r"name:\s*(\w+)\W+value:\s*([-+\d.eE]+)", text):
+    for name, value in re.findall(r"name:\s*(\w+)\W+value:\s*([-+\d.eE]+)", text.split("\nensemble:")[0]):
         values[name] = (values[name][0], float(value))
     return re.search(r"^vehicle:\s*(\S+)", text, re.M).group(1), values
 
@@ -87,8 +92,9 @@ def scaled(base, values, mass, length, width, front, mass_source):
         "width_m": (width, "assumed: typical outline"),
         "yaw_inertia_kg_m2": (old["yaw_inertia_kg_m2"] * mass_ratio * gyration,
                               f"{base} x {mass_ratio * gyration:.3f} (mass x (length2 + width2))"),
-        "unload_factor_1": (max(1.0, old["unload_factor_1"] * min(1.0, front ** 2)),
-                            f"{base} x {min(1.0, front ** 2):.3f} (stiffness the time step stands)"),
+        "unload_end_factor_1": (
+            max(old["unload_factor_1"], old["unload_end_factor_1"] * min(1.0, front ** 2)),
+            f"{base} x {min(1.0, front ** 2):.3f} (stiffness the time step stands)"),
         "cg_to_front_m": (share * length, f"{share:.3f} of the length, as {base}"),
     }
     for name, (unit, value) in values.items():
@@ -96,7 +102,10 @@ def scaled(base, values, mass, length, width, front, mass_source):
             yield (name, unit, *own[name])
         elif name in KIND_OF:
             ratio = ratios[KIND_OF[name]]
-            yield name, unit, value * ratio, f"{base} x {ratio:.3f} ({WORDS[KIND_OF[name]]})"
+            source = f"{base} x {ratio:.3f} ({WORDS[KIND_OF[name]]})"
+            if value * ratio < SMALLEST[name]:
+                source += ", not below the model's smallest"
+            yield name, unit, max(value * ratio, SMALLEST[name]), source
         else:
             yield name, unit, value, f"as {base}"
 

@@ -177,6 +177,16 @@ static double overlap_share(const cp_outline *a, const cp_outline *b)
     return fmax(0.0, high_m - low_m) / (2.0 * a->half_width_m);
 }
 
+// The same of b's front edge alone: what of a's front it meets, not what its flank hides.
+static double front_overlap_share(const cp_outline *a, cp_vec2 front_m, const cp_outline *b)
+{
+    double middle_m = to_outline(a, cp_vec2_sub(front_m, a->centre_m)).y;
+    double reach_m = fabs(to_outline(a, b->along).x) * b->half_width_m;
+    double low_m = fmax(-a->half_width_m, middle_m - reach_m);
+    double high_m = fmin(a->half_width_m, middle_m + reach_m);
+    return fmax(0.0, high_m - low_m) / (2.0 * a->half_width_m);
+}
+
 // Angle of a relative velocity against the own x axis, 0 = straight ahead.
 static double velocity_angle(cp_vec2 relative_m_s, double yaw_rad)
 {
@@ -222,8 +232,10 @@ cp_crash_description cp_crash_describe(const cp_vehicle_model *model_a,
     description.velocity_angle_rad[0] = velocity_angle(relative, a->yaw_rad);
     description.velocity_angle_rad[1] = velocity_angle(cp_vec2_scale(relative, -1.0), b->yaw_rad);
     cp_outline outline_b = car_outline(model_b, b);
-    description.overlap_1 = configuration->side[0] == CP_SIDE_FRONT
-                                ? overlap_share(&outline_a, &outline_b)
-                                : (double)NAN;
+    description.overlap_1 =
+        configuration->side[0] != CP_SIDE_FRONT ? (double)NAN
+        : configuration->side[1] == CP_SIDE_FRONT
+            ? front_overlap_share(&outline_a, front_middle(model_b, b), &outline_b)
+            : overlap_share(&outline_a, &outline_b);
     return description;
 }

@@ -48,7 +48,8 @@ typedef struct cp_crash_description {
     double closing_speed_m_s; /* of the two bodies at the contact point */
     double lateral_offset_m;  /* of the middle of b's front edge (barrier: face) in a's frame */
     double angle_rad;         /* wrap(yaw_b - yaw_a - pi): 0 exactly oncoming */
-    double overlap_1;         /* share of a's width covered by b; NAN unless a's front is struck */
+    double overlap_1;         /* share of a's width covered by b, front on front by b's front edge;
+                               * NAN unless a's front is struck */
     double velocity_angle_rad[2]; /* relative velocity against the own x axis, 0 = straight ahead */
 } cp_crash_description;
 

@@ -43,9 +43,8 @@ static cp_reference_pulse reference_of(const cp_vehicle_model *model, double spe
     char path[] = "/tmp/objective_XXXXXX";
     FILE *file = fdopen(mkstemp(path), "w");
     assert_non_null(file);
-    fputs(add.longitudinal_only ? "vehicle,time_s,ax_m_s2,_,vx_m_s\n"
-                                : "vehicle,time_s,ax_m_s2,ay_m_s2,vx_m_s,vy_m_s\n",
-          file);
+    fprintf(file, "vehicle,time_s,ax_m_s2,%s,x_m,y_m,yaw_rad,yaw_rate_rad_s,yaw_acc_rad_s2\n",
+            add.longitudinal_only ? "other_1,vx_m_s,other_2" : "ay_m_s2,vx_m_s,vy_m_s");
     assert_int_equal(cp_pulse_write_csv(&filtered, "a", file, &error), CP_OK);
     assert_int_equal(fclose(file), 0);
     cp_pulse_source source = {.path = path,

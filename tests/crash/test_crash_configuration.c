@@ -127,6 +127,25 @@ static void what_misses_is_refused(void **state)
     assert_non_null(strstr(error.text, "miss each other"));
 }
 
+// Front on front the overlap is that of the two front edges, whatever the flank of a turned car
+// hides.
+static void overlap_is_that_of_the_two_fronts(void **state)
+{
+    (void)state;
+    cp_vehicle_model car = cp_vehicle_model_default();
+    const double offset_m = 0.9, angle_rad = cp_rad_from_deg(30.0);
+    cp_crash_configuration crash;
+    cp_error error = {0};
+    if (cp_crash_configuration_from_description(&car, &car, NULL, 12.0, 12.0, offset_m, angle_rad,
+                                                &crash, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(crash.side[1], CP_SIDE_FRONT);
+    cp_vec2 contact_m = cp_crash_contact_point(&car, &car, &crash);
+    double low_m = offset_m - 0.5 * car.width_m * cos(angle_rad);
+    double expected = (0.5 * car.width_m - low_m) / car.width_m;
+    assert_near(cp_crash_describe(&car, &car, &crash, contact_m).overlap_1, expected, 1e-9);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -136,6 +155,7 @@ int main(void)
         cmocka_unit_test(a_crossing_car_is_struck_on_its_side),
         cmocka_unit_test(the_barrier_lies_where_the_sign_convention_says),
         cmocka_unit_test(what_misses_is_refused),
+        cmocka_unit_test(overlap_is_that_of_the_two_fronts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

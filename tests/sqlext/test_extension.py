@@ -91,7 +91,7 @@ def check_pulses(db):
     crash, role = one(db, "SELECT p.crash_id, p.role FROM pulse AS p, pulse_samples(p.samples) AS s GROUP "
                       "BY 1, 2 ORDER BY max(s.ax_m_s2) - min(s.ax_m_s2) DESC, 1, 2 LIMIT 1")
     raw, smooth = one(db, "SELECT max(s.ax_m_s2) - min(s.ax_m_s2), (SELECT max(ax_m_s2) - "
-                      "min(ax_m_s2) FROM pulse_samples(cfc(p.samples, 60))) FROM pulse AS p, "
+                      "min(ax_m_s2) FROM pulse_samples(cfc(p.samples, 20))) FROM pulse AS p, "
                       "pulse_samples(p.samples) AS s WHERE p.crash_id = ? AND p.role = ?",
                       crash, role)
     assert 0 < smooth < raw, (raw, smooth)

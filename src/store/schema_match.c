@@ -102,6 +102,8 @@ static cp_status match_object(cp_store *store, sqlite3_stmt *ours, cp_statement 
     if (status != CP_OK)
         return status;
     const char *found = row ? (const char *)sqlite3_column_text(find->handle, 0) : NULL;
+    if (row && found == NULL && sqlite3_column_type(find->handle, 0) != SQLITE_NULL)
+        return cp_fail_memory(error, "the schema");
     bool same = found != NULL && is_same_definition(wanted, found);
     if (strcmp(type, "view") == 0)
         *views &= same;
@@ -148,10 +150,15 @@ static cp_status find_foreign_trigger(cp_store *store, sqlite3 *ours, cp_error *
         status = fail_ours(ours, error);
     while (status == CP_OK && (status = cp_statement_row(&triggers, &row, error)) == CP_OK && row) {
         const char *name = (const char *)sqlite3_column_text(triggers.handle, 0);
-        if (name == NULL || sqlite3_bind_text(known, 1, name, -1, SQLITE_STATIC) != SQLITE_OK)
+        int result = SQLITE_NOMEM;
+        if (name != NULL && sqlite3_bind_text(known, 1, name, -1, SQLITE_STATIC) == SQLITE_OK)
+            result = sqlite3_step(known);
+        if (name == NULL)
             status = cp_fail_memory(error, "the schema");
-        else if (sqlite3_step(known) != SQLITE_ROW)
+        else if (result == SQLITE_DONE)
             status = fail_object(store, "is not of crashpulse", "trigger", name, error);
+        else if (result != SQLITE_ROW)
+            status = fail_ours(ours, error);
         sqlite3_reset(known);
     }
     sqlite3_finalize(known);

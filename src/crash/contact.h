@@ -19,6 +19,9 @@ typedef struct cp_contact_point {
     double depth_m;     /* > 0 when penetrating */
 } cp_contact_point;
 
+/* Width over which a dent spreads. Two points of a contact nearer to each other are one patch. */
+#define CP_CONTACT_PATCH_M 0.12
+
 /* Up to two points of a common normal. */
 typedef struct cp_manifold {
     int count;

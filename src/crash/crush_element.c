@@ -30,25 +30,26 @@ static piece piece_of(const cp_crush_law *law, int index)
 }
 
 // The piece that a compression lies on.
-static int piece_at(const cp_crush_law *law, double s_m)
+static piece piece_at(const cp_crush_law *law, double s_m)
 {
     int index = 0;
-    while (index <= law->points && s_m >= piece_of(law, index).to_m)
+    while (index < law->points && s_m >= law->s_m[index])
         index++;
-    return index;
+    piece at = piece_of(law, index);
+    return s_m >= at.to_m ? piece_of(law, index + 1) : at;
 }
 
 double cp_crush_loading_force(const cp_crush_law *law, double s_m)
 {
     if (s_m <= 0.0)
         return 0.0;
-    piece at = piece_of(law, piece_at(law, s_m));
+    piece at = piece_at(law, s_m);
     return at.from_n + at.slope_n_m * (s_m - at.from_m);
 }
 
 double cp_crush_loading_slope(const cp_crush_law *law, double s_m)
 {
-    return s_m < 0.0 ? 0.0 : piece_of(law, piece_at(law, s_m)).slope_n_m;
+    return s_m < 0.0 ? 0.0 : piece_at(law, s_m).slope_n_m;
 }
 
 double cp_crush_loading_work(const cp_crush_law *law, double s_m)

@@ -24,9 +24,6 @@
  * Damping is limited to what stops the touching bodies within a step, so it only ever dissipates.
  */
 
-/* Width over which a dent spreads. Two points of a pair nearer to each other are one patch. */
-#define CP_CONTACT_PATCH_M 0.12
-
 /* One pair of outlines and its contact of the present step. */
 typedef struct cp_encounter_pair {
     dBodyID body[2];  /* [1] NULL: the barrier */

@@ -2,7 +2,6 @@
 #include "crash/front_structure.h"
 
 #include "crash/crush_law.h"
-#include "crash/encounter.h"
 
 #include <string.h>
 
@@ -282,6 +281,7 @@ static cp_crush_law share_of(const cp_crush_law *whole, double share_1)
     law.plateau_n *= share_1;
     law.unload_n_m *= share_1;
     law.unload_end_n_m *= share_1;
+    law.pull_n *= share_1;
     return law;
 }
 

@@ -180,10 +180,22 @@ static bool far_apart(const cp_outline *a, const cp_outline *b, double reach_m)
     return cp_vec2_dot(apart, apart) > reach * reach;
 }
 
+// Whether b lies beyond one of a's four sides.
+static bool beyond_a_side(const cp_outline *a, const cp_outline *b, double reach_m)
+{
+    cp_vec2 apart = cp_vec2_sub(b->centre_m, a->centre_m), ahead = a->along;
+    double cosine = fabs(cp_vec2_dot(ahead, b->along)), sine = fabs(cp_vec2_cross(ahead, b->along));
+    double along_m = fabs(cp_vec2_dot(apart, ahead)), across_m = fabs(cp_vec2_cross(ahead, apart));
+    return along_m >
+               a->half_length_m + b->half_length_m * cosine + b->half_width_m * sine + reach_m ||
+           across_m >
+               a->half_width_m + b->half_length_m * sine + b->half_width_m * cosine + reach_m;
+}
+
 cp_manifold cp_outline_contact(const cp_outline *a, const cp_outline *b, double reach_m)
 {
     cp_manifold none = {0};
-    if (far_apart(a, b, reach_m))
+    if (far_apart(a, b, reach_m) || beyond_a_side(a, b, reach_m) || beyond_a_side(b, a, reach_m))
         return none;
     polygon core_a = core_polygon(a), core_b = core_polygon(b);
     face_view from_a = face_gap(&core_a, &core_b), from_b = face_gap(&core_b, &core_a);
@@ -207,6 +219,15 @@ cp_manifold cp_outline_contact(const cp_outline *a, const cp_outline *b, double 
         face_contact(&core_b, from_b.face, &core_a, b->radius_m, a->radius_m, reach_m);
     manifold.normal = cp_vec2_scale(manifold.normal, -1.0);
     return manifold;
+}
+
+double cp_manifold_point_weight(const cp_manifold *manifold)
+{
+    if (manifold->count < 2)
+        return 1.0;
+    double apart_m =
+        cp_vec2_length(cp_vec2_sub(manifold->point[1].position_m, manifold->point[0].position_m));
+    return 0.5 + 0.5 * fmin(1.0, apart_m / CP_CONTACT_PATCH_M);
 }
 
 double cp_outline_distance_below(const cp_outline *a, const cp_outline *b, double limit_m)

@@ -29,6 +29,10 @@ typedef struct cp_manifold {
     cp_contact_point point[2];
 } cp_manifold;
 
+/* Share of the pair's stiffness at each point. Two points push both: near each other they are one
+ * patch, no stiffer than a single corner, and grow to twice that with the distance. */
+double cp_manifold_point_weight(const cp_manifold *manifold);
+
 /* Points of a and b that are nearer than reach_m (0: penetrating only). */
 cp_manifold cp_outline_contact(const cp_outline *a, const cp_outline *b, double reach_m);
 

@@ -363,7 +363,24 @@ static bool will_meet_again(const crash_run *run, double horizon_s)
     return false;
 }
 
-static void update_energy(crash_run *run)
+// The highest mechanical energy so far, once the forces of a step are known. That of the step
+// before: its forces, hence what it had stored, lie in the middle of the two velocities around it.
+static void watch_energy(crash_run *run)
+{
+    cp_crash_energy *energy = &run->result->energy;
+    double elastic_j = run->encounter.elastic_normal_j + run->encounter.elastic_friction_j;
+    double kinetic_j = 0.0;
+    for (int c = 0; c < run->car_count; c++) {
+        kinetic_j += cp_car_kinetic_energy(&run->car[c]);
+        elastic_j += run->car[c].elastic_j;
+    }
+    double middle_j = run->before_elastic_j + 0.5 * (run->before_kinetic_j + kinetic_j);
+    energy->highest_mechanical_j = fmax(energy->highest_mechanical_j, middle_j);
+    run->before_elastic_j = elastic_j;
+    run->before_kinetic_j = kinetic_j;
+}
+
+static void sum_energy(crash_run *run)
 {
     cp_crash_energy *energy = &run->result->energy;
     double blocks_j = 0.0; // of the contact's work, what blocks have taken
@@ -384,13 +401,8 @@ static void update_energy(crash_run *run)
     energy->friction_j = run->encounter.friction_work_j - run->encounter.elastic_friction_j;
     energy->contact_damping_j =
         run->encounter.normal_work_j - run->encounter.elastic_normal_j - blocks_j;
-
-    // Of the step before: its forces, hence what it had stored, lie in the middle of the two
-    // velocities around it.
     double middle_j = run->before_elastic_j + 0.5 * (run->before_kinetic_j + energy->kinetic_j);
     energy->highest_mechanical_j = fmax(energy->highest_mechanical_j, middle_j);
-    run->before_elastic_j = energy->elastic_j;
-    run->before_kinetic_j = energy->kinetic_j;
 }
 
 static cp_crash_momentum momentum_now(const crash_run *run)
@@ -436,17 +448,17 @@ static bool olc_passed(const crash_run *run, bool awaited)
     return true;
 }
 
-// One step of the world; *pressed: the parties pressed on each other.
-static cp_status advance(crash_run *run, double dt, bool *pressed, cp_error *error)
+// One step of the world; *pressed_n: how hard the parties pressed on each other.
+static cp_status advance(crash_run *run, double dt, double *pressed_n, cp_error *error)
 {
     for (int c = 0; c < run->car_count; c++)
         cp_car_apply_forces(&run->car[c]);
     cp_encounter_apply_forces(&run->encounter, dt);
-    update_energy(run);
+    watch_energy(run);
     if (!dWorldStep(run->world, dt))
         return cp_fail(error, CP_CRASH_FAILED, "the physics engine ODE refused the step at %g s",
                        dt * (double)run->sample);
-    *pressed = cp_encounter_end_step(&run->encounter, dt);
+    *pressed_n = cp_encounter_end_step(&run->encounter, dt);
     for (int c = 0; c < run->car_count; c++)
         cp_car_after_step(&run->car[c], dt);
     record_step(run, dt);
@@ -456,22 +468,25 @@ static cp_status advance(crash_run *run, double dt, bool *pressed, cp_error *err
 
 static cp_status simulate_contact(crash_run *run, cp_error *error)
 {
-    enum { OLC_EVERY = 20 }; // steps between two looks whether OLC is decided
+    enum { OLC_EVERY = 20 };           // steps between two looks whether OLC is decided
+    static const double LIGHT_N = 1e3; // wrecks that lean on each other
     const cp_crash_options *options = run->options;
     double dt = options->time_step_s;
     size_t wanted = (size_t)llround(options->duration_s / dt);
     size_t longest = (size_t)llround(fmax(options->duration_s, options->longest_duration_s) / dt);
     size_t coast_after = (size_t)llround(options->coast_after_s / dt);
-    size_t last_pressed = 0;
+    size_t last_pressed = 0, last_hard = 0;
 
     // Free from the beginning: nothing to simulate.
     bool free_again = !run->result->touched;
     while (!free_again && run->sample < longest) {
-        bool pressed = false;
-        cp_status status = advance(run, dt, &pressed, error);
+        double pressed_n = 0.0;
+        cp_status status = advance(run, dt, &pressed_n, error);
         if (status != CP_OK)
             return status;
-        if (pressed) {
+        if (pressed_n > LIGHT_N)
+            last_hard = run->sample;
+        if (pressed_n > 0.0) {
             last_pressed = run->sample;
             run->result->separation_s = dt * (double)run->sample;
         }
@@ -485,8 +500,12 @@ static cp_status simulate_contact(crash_run *run, cp_error *error)
         size_t quiet = run->sample - last_pressed;
         if (quiet >= coast_after && quiet % coast_after == 0)
             free_again = !will_meet_again(run, dt * (double)(longest - run->sample));
+
+        // All that was asked for is there, and what still presses changes nothing.
+        if (run->sample >= wanted && run->sample - last_hard >= coast_after)
+            free_again = true;
     }
-    update_energy(run);
+    sum_energy(run);
     run->result->momentum_end = momentum_now(run);
 
     // The record ends when asked, or when contact has ended and OLC is decided, if that is later.
@@ -561,7 +580,9 @@ static void begin_record(crash_run *run)
         run->first_relative_m_s = cp_vec2_sub(run->last[0].velocity_m_s, run->last[1].velocity_m_s);
         run->last_approach_m_s = cp_vec2_dot(run->first_relative_m_s, run->first_relative_m_s);
     }
-    update_energy(run);
+    sum_energy(run);
+    run->before_elastic_j = result->energy.elastic_j;
+    run->before_kinetic_j = result->energy.kinetic_j;
     result->energy.start_j = result->energy.kinetic_j;
     result->momentum_start = momentum_now(run);
 }

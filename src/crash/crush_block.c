@@ -10,40 +10,27 @@ static double collapse_force(const cp_crush_block *block)
                 cp_crush_collapse_force(&block->law));
 }
 
-static double rate_force(const cp_crush_block *block, double slip_m, double time_step_s)
+cp_crush_loading cp_crush_block_resistance(const cp_crush_block *block, double slip_m,
+                                           double time_step_s)
 {
-    double factor = cp_strain_rate_factor(block->rate_gain_1, slip_m / time_step_s);
-    return (factor - 1.0) * collapse_force(block);
+    cp_crush_loading at = cp_crush_loading_at(&block->law, block->s_m + slip_m);
+    cp_strain_rate rate = cp_strain_rate_at(block->rate_gain_1, slip_m / time_step_s);
+    double collapse_n = collapse_force(block);
+    at.force_n = block->share_1 * (at.force_n + (rate.factor_1 - 1.0) * collapse_n);
+    at.slope_n_m = block->share_1 * (at.slope_n_m + rate.slope_s_m * collapse_n / time_step_s);
+    return at;
 }
 
-double cp_crush_block_resistance(const cp_crush_block *block, double slip_m, double time_step_s)
+cp_crush_loading cp_crush_block_side_resistance(const cp_crush_block *block, double slip_m)
 {
-    return block->share_1 * (cp_crush_loading_force(&block->law, block->s_m + slip_m) +
-                             rate_force(block, slip_m, time_step_s));
-}
-
-double cp_crush_block_slope(const cp_crush_block *block, double slip_m, double time_step_s)
-{
-    double rate_slope = cp_strain_rate_slope(block->rate_gain_1, slip_m / time_step_s);
-    return block->share_1 * (cp_crush_loading_slope(&block->law, block->s_m + slip_m) +
-                             rate_slope * collapse_force(block) / time_step_s);
-}
-
-double cp_crush_block_side_resistance(const cp_crush_block *block, double slip_m)
-{
-    return cp_crush_loading_force(&block->side_law, block->side_way_m + fabs(slip_m));
-}
-
-double cp_crush_block_side_slope(const cp_crush_block *block, double slip_m)
-{
-    return cp_crush_loading_slope(&block->side_law, block->side_way_m + fabs(slip_m));
+    return cp_crush_loading_at(&block->side_law, block->side_way_m + fabs(slip_m));
 }
 
 void cp_crush_block_settle(cp_crush_block *block, double time_step_s)
 {
     if (block->slip_m > 0.0) {
-        block->rate_j +=
-            block->share_1 * rate_force(block, block->slip_m, time_step_s) * block->slip_m;
+        double factor_1 = cp_strain_rate_factor(block->rate_gain_1, block->slip_m / time_step_s);
+        block->rate_j += block->share_1 * (factor_1 - 1.0) * collapse_force(block) * block->slip_m;
         block->plastic_j +=
             block->share_1 * (cp_crush_loading_work(&block->law, block->s_m + block->slip_m) -
                               cp_crush_loading_work(&block->law, block->s_m));

@@ -32,11 +32,10 @@ typedef struct cp_crush_block {
 } cp_crush_block;
 
 /* Resistance after slip_m in a step, and its slope over the slip. */
-double cp_crush_block_resistance(const cp_crush_block *block, double slip_m, double time_step_s);
-double cp_crush_block_slope(const cp_crush_block *block, double slip_m, double time_step_s);
+cp_crush_loading cp_crush_block_resistance(const cp_crush_block *block, double slip_m,
+                                           double time_step_s);
 /* The same sideways, over the slip of the step in either direction. */
-double cp_crush_block_side_resistance(const cp_crush_block *block, double slip_m);
-double cp_crush_block_side_slope(const cp_crush_block *block, double slip_m);
+cp_crush_loading cp_crush_block_side_resistance(const cp_crush_block *block, double slip_m);
 
 /* Take the present step's slips into the permanent crush and account for their work. */
 void cp_crush_block_settle(cp_crush_block *block, double time_step_s);

@@ -2,6 +2,7 @@
 #include "crash/crush_element.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 // One straight piece of the loading curve; the last ones are endless.
 typedef struct piece {
@@ -39,17 +40,22 @@ static piece piece_at(const cp_crush_law *law, double s_m)
     return s_m >= at.to_m ? piece_of(law, index + 1) : at;
 }
 
+cp_crush_loading cp_crush_loading_at(const cp_crush_law *law, double s_m)
+{
+    if (s_m < 0.0)
+        return (cp_crush_loading){0.0, 0.0};
+    piece at = piece_at(law, s_m);
+    return (cp_crush_loading){at.from_n + at.slope_n_m * (s_m - at.from_m), at.slope_n_m};
+}
+
 double cp_crush_loading_force(const cp_crush_law *law, double s_m)
 {
-    if (s_m <= 0.0)
-        return 0.0;
-    piece at = piece_at(law, s_m);
-    return at.from_n + at.slope_n_m * (s_m - at.from_m);
+    return cp_crush_loading_at(law, s_m).force_n;
 }
 
 double cp_crush_loading_slope(const cp_crush_law *law, double s_m)
 {
-    return s_m < 0.0 ? 0.0 : piece_at(law, s_m).slope_n_m;
+    return cp_crush_loading_at(law, s_m).slope_n_m;
 }
 
 double cp_crush_loading_work(const cp_crush_law *law, double s_m)
@@ -141,23 +147,24 @@ double cp_crush_plastic_energy(const cp_crush_law *law, const cp_crush_state *st
 
 static const double RATE_REFERENCE_M_S = 10.0, RATE_STRAIGHT_BELOW_M_S = 1.0;
 
-double cp_strain_rate_factor(double gain_1, double rate_m_s)
+cp_strain_rate cp_strain_rate_at(double gain_1, double rate_m_s)
 {
-    if (rate_m_s <= 0.0)
-        return 1.0;
+    if (rate_m_s < 0.0)
+        return (cp_strain_rate){1.0, 0.0};
     double rate_1 = fmax(rate_m_s, RATE_STRAIGHT_BELOW_M_S) / RATE_REFERENCE_M_S;
-    double gain = gain_1 * pow(rate_1, 0.2) * fmin(1.0, rate_m_s / RATE_STRAIGHT_BELOW_M_S);
-    return fmin(CP_STRAIN_RATE_LARGEST, 1.0 + gain);
+    double gain = gain_1 * pow(rate_1, 0.2);
+    bool straight = rate_m_s < RATE_STRAIGHT_BELOW_M_S;
+    double slope_s_m = straight ? gain / RATE_STRAIGHT_BELOW_M_S : 0.2 * gain / rate_m_s;
+    if (straight)
+        gain *= rate_m_s / RATE_STRAIGHT_BELOW_M_S;
+    if (1.0 + gain >= CP_STRAIN_RATE_LARGEST)
+        return (cp_strain_rate){CP_STRAIN_RATE_LARGEST, 0.0};
+    return (cp_strain_rate){1.0 + gain, slope_s_m};
 }
 
-double cp_strain_rate_slope(double gain_1, double rate_m_s)
+double cp_strain_rate_factor(double gain_1, double rate_m_s)
 {
-    double factor = cp_strain_rate_factor(gain_1, fmax(rate_m_s, RATE_STRAIGHT_BELOW_M_S));
-    if (rate_m_s < 0.0 || factor >= CP_STRAIN_RATE_LARGEST)
-        return 0.0;
-    if (rate_m_s < RATE_STRAIGHT_BELOW_M_S)
-        return (factor - 1.0) / RATE_STRAIGHT_BELOW_M_S;
-    return 0.2 * (factor - 1.0) / rate_m_s;
+    return cp_strain_rate_at(gain_1, rate_m_s).factor_1;
 }
 
 double cp_bending_moment(const cp_bending_law *law, cp_bending_state *state, double rotation_rad)

@@ -33,6 +33,12 @@ typedef struct cp_crush_state {
 double cp_crush_loading_force(const cp_crush_law *law, double s_m);
 /* Slope of the loading curve just beyond s_m. */
 double cp_crush_loading_slope(const cp_crush_law *law, double s_m);
+/* Both at once. */
+typedef struct cp_crush_loading {
+    double force_n;
+    double slope_n_m;
+} cp_crush_loading;
+cp_crush_loading cp_crush_loading_at(const cp_crush_law *law, double s_m);
 /* Work of loading from 0 to s_m. */
 double cp_crush_loading_work(const cp_crush_law *law, double s_m);
 /* Largest force of the collapse: of any point, without stop and plateau. */
@@ -52,8 +58,12 @@ double cp_crush_plastic_energy(const cp_crush_law *law, const cp_crush_state *st
  * at most 1.4 (dynamic over static crush force of steel: 1.2 to 1.4). */
 #define CP_STRAIN_RATE_LARGEST 1.4
 double cp_strain_rate_factor(double gain_1, double rate_m_s);
-/* Its slope over the rate, s/m. */
-double cp_strain_rate_slope(double gain_1, double rate_m_s);
+/* The factor, and its slope over the rate, s/m. */
+typedef struct cp_strain_rate {
+    double factor_1;
+    double slope_s_m;
+} cp_strain_rate;
+cp_strain_rate cp_strain_rate_at(double gain_1, double rate_m_s);
 
 /* Plastic hinge: moment over rotation, linear with stiffness_nm_rad up to +-yield_nm, then
  * constant; unloads elastically. */

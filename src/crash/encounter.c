@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "crash/encounter.h"
 
+#include "crash/block_yield.h"
+
 #include <string.h>
 
 // Number of outlines of a party: a car's, or the barrier's one.
@@ -124,151 +126,15 @@ static void push(const cp_encounter_pair *pair, cp_vec2 force_n, cp_vec2 at)
         dBodyAddForceAtPos(pair->body[1], force_n.x, force_n.y, 0.0, at.x, at.y, 0.0);
 }
 
-// A pair that touches at two points pushes with both. Near each other they are one patch, no
-// stiffer than a single corner: its stiffness grows with the distance of the points.
-static double point_weight(const cp_manifold *manifold)
-{
-    if (manifold->count < 2)
-        return 1.0;
-    double apart_m =
-        cp_vec2_length(cp_vec2_sub(manifold->point[1].position_m, manifold->point[0].position_m));
-    return 0.5 + 0.5 * fmin(1.0, apart_m / CP_CONTACT_PATCH_M);
-}
-
-static cp_crush_block *block_of(const cp_encounter *encounter, int party, int index)
+cp_crush_block *cp_encounter_block(const cp_encounter *encounter, int party, int outline)
 {
     cp_car *car = encounter->car[party];
-    return car != NULL && car->outline[index].block >= 0 ? &car->block[car->outline[index].block]
-                                                         : NULL;
+    int block = car != NULL ? car->outline[outline].block : -1;
+    return block >= 0 ? &car->block[block] : NULL;
 }
 
 // What presses on a block from nearer to its side than this does not count as its face's.
 static const double FACE_COSINE = 0.2;
-
-// All that presses on the blocks of a party, on their faces and to their left, and how much that
-// falls per metre of slip; facing: whether any of it is a block's face itself.
-typedef struct block_loads {
-    double load_n[CP_OUTLINES_MAX];
-    double slope_n_m[CP_OUTLINES_MAX];
-    double side_load_n[CP_OUTLINES_MAX];
-    double side_slope_n_m[CP_OUTLINES_MAX];
-    double gap_load_n[CP_OUTLINES_MAX]; /* < 0: where it has given more than there was, likewise */
-    double gap_slope_n_m[CP_OUTLINES_MAX];
-    bool facing[CP_OUTLINES_MAX];
-} block_loads;
-
-static void add_load(const cp_encounter_pair *pair, int party, int own, block_loads *loads)
-{
-    double cosine = fmax(0.0, pair->cosine[party]), side = pair->side_cosine[party];
-    if (cosine == 0.0 && side == 0.0)
-        return;
-    double stiffness_n_m = point_weight(&pair->manifold) * pair->stiffness_n_m;
-    for (int k = 0; k < pair->manifold.count; k++) {
-        double depth_m = pair->manifold.point[k].depth_m - pair->give_m;
-        if (depth_m <= 0.0) {
-            loads->gap_load_n[own] += stiffness_n_m * depth_m * cosine;
-            loads->gap_slope_n_m[own] += stiffness_n_m * cosine * cosine;
-            continue;
-        }
-        loads->load_n[own] += stiffness_n_m * depth_m * cosine;
-        loads->slope_n_m[own] += stiffness_n_m * cosine * cosine;
-        loads->side_load_n[own] += stiffness_n_m * depth_m * side;
-        loads->side_slope_n_m[own] += stiffness_n_m * side * side;
-        loads->facing[own] = loads->facing[own] || pair->cosine[1 - party] >= FACE_COSINE ||
-                             pair->side_cosine[1 - party] != 0.0;
-    }
-}
-
-// The face's slip that balances its load, moved by the share of the way.
-static void give_back(cp_crush_block *block, double load_n, double load_slope_n_m, double share_1,
-                      double time_step_s)
-{
-    double excess_n = load_n - cp_crush_block_resistance(block, block->slip_m, time_step_s);
-    double slope_n_m = load_slope_n_m + cp_crush_block_slope(block, block->slip_m, time_step_s);
-    double more_m = slope_n_m > 0.0 ? excess_n / slope_n_m : 0.0;
-    block->slip_m = fmax(0.0, block->slip_m + share_1 * more_m);
-}
-
-// The same sideways, in the direction that it is pushed.
-static void give_aside(cp_crush_block *block, double load_n, double load_slope_n_m, double share_1)
-{
-    double way =
-        block->side_slip_m != 0.0 ? copysign(1.0, block->side_slip_m) : copysign(1.0, load_n);
-    double slip_m = fabs(block->side_slip_m);
-    double excess_n = way * load_n - cp_crush_block_side_resistance(block, slip_m);
-    double slope_n_m = load_slope_n_m + cp_crush_block_side_slope(block, slip_m);
-    double more_m = slope_n_m > 0.0 ? excess_n / slope_n_m : 0.0;
-    block->side_slip_m = way * fmax(0.0, slip_m + share_1 * more_m);
-}
-
-// One round: every block takes the slip that balances its load as it is; where two blocks face
-// each other, or one gives both ways, each takes half. Returns whether any did.
-static bool yield_round(cp_encounter *encounter, double time_step_s, bool *facing)
-{
-    block_loads loads[2] = {0};
-    for (int k = 0; k < encounter->touching_count; k++) {
-        const cp_touch *touch = &encounter->touching[k];
-        const cp_encounter_pair *pair = &encounter->pair[touch->outline[0]][touch->outline[1]];
-        for (int party = 0; party < 2; party++)
-            add_load(pair, party, touch->outline[party], &loads[party]);
-    }
-    bool gave = false;
-    *facing = false;
-    for (int party = 0; party < 2; party++) {
-        for (int k = 0; k < outline_count(encounter, party); k++) {
-            cp_crush_block *block = block_of(encounter, party, k);
-            if (block == NULL)
-                continue;
-            const block_loads *own = &loads[party];
-            bool both_ways = own->slope_n_m[k] > 0.0 && own->side_slope_n_m[k] > 0.0;
-            bool shares = own->facing[k] || both_ways;
-            double share_1 = shares ? 0.5 : 1.0;
-            // A block that has given too much comes back as far as nothing presses on it any more.
-            bool lost = own->slope_n_m[k] == 0.0;
-            give_back(block, lost ? own->gap_load_n[k] : own->load_n[k],
-                      lost ? own->gap_slope_n_m[k] : own->slope_n_m[k], share_1, time_step_s);
-            if (block->side_law.points > 0 &&
-                (own->side_slope_n_m[k] > 0.0 || block->side_slip_m != 0.0))
-                give_aside(block, own->side_load_n[k], own->side_slope_n_m[k], share_1);
-            gave = gave || block->slip_m > 0.0 || block->side_slip_m != 0.0;
-            *facing = *facing || shares;
-        }
-    }
-    return gave;
-}
-
-// What the blocks of every touching pair give along its normal.
-static void share_slip(cp_encounter *encounter)
-{
-    for (int k = 0; k < encounter->touching_count; k++) {
-        const int *index = encounter->touching[k].outline;
-        cp_encounter_pair *pair = &encounter->pair[index[0]][index[1]];
-        pair->give_m = 0.0;
-        for (int party = 0; party < 2; party++) {
-            const cp_crush_block *block = block_of(encounter, party, index[party]);
-            if (block != NULL)
-                pair->give_m += block->slip_m * fmax(0.0, pair->cosine[party]) +
-                                block->side_slip_m * pair->side_cosine[party];
-        }
-    }
-}
-
-// Blocks give way until what presses on them is what they resist.
-static void yield_blocks(cp_encounter *encounter, double time_step_s)
-{
-    enum { ROUNDS = 4, ROUNDS_FACING = 10 };
-    bool facing = false;
-    for (int round = 0; round < (facing ? ROUNDS_FACING : ROUNDS); round++) {
-        bool gave = yield_round(encounter, time_step_s, &facing);
-        share_slip(encounter);
-        if (!gave)
-            break;
-    }
-    for (int party = 0; party < 2; party++)
-        for (int k = 0; k < outline_count(encounter, party); k++)
-            if (block_of(encounter, party, k) != NULL)
-                cp_crush_block_settle(block_of(encounter, party, k), time_step_s);
-}
 
 // A block resists by at least this share of its force wherever it is pressed on.
 static const double LEAST_SHARE_1 = 0.05;
@@ -305,12 +171,12 @@ static void share_faces(cp_encounter *encounter, int party, const cp_outline out
         covered[k] = (covered_face){INFINITY, -INFINITY, 0.0};
     for (int k = 0; k < encounter->touching_count; k++) {
         const int *index = encounter->touching[k].outline;
-        if (block_of(encounter, party, index[party]) != NULL)
+        if (cp_encounter_block(encounter, party, index[party]) != NULL)
             cover_face(&encounter->pair[index[0]][index[1]], party, &outline[index[party]],
                        &covered[index[party]]);
     }
     for (int k = 0; k < outline_count(encounter, party); k++) {
-        cp_crush_block *block = block_of(encounter, party, k);
+        cp_crush_block *block = cp_encounter_block(encounter, party, k);
         if (block == NULL)
             continue;
         // A dent spreads, but not beyond the block's edge: what only grazes it meets next to
@@ -325,7 +191,7 @@ static void share_faces(cp_encounter *encounter, int party, const cp_outline out
 static double press(cp_encounter *encounter, cp_encounter_pair *pair, double time_step_s)
 {
     const cp_manifold *manifold = &pair->manifold;
-    double total_n = 0.0, weight = point_weight(manifold);
+    double total_n = 0.0, weight = cp_manifold_point_weight(manifold);
     cp_vec2 moment = {0.0, 0.0};
     for (int k = 0; k < manifold->count; k++) {
         cp_vec2 at = manifold->point[k].position_m;
@@ -445,7 +311,7 @@ void cp_encounter_apply_forces(cp_encounter *encounter, double time_step_s)
     encounter->elastic_normal_j = 0.0;
     encounter->elastic_friction_j = 0.0;
     find_touching(encounter);
-    yield_blocks(encounter, time_step_s);
+    cp_yield_blocks(encounter, time_step_s);
     for (int k = 0; k < encounter->touching_count; k++) {
         const int *index = encounter->touching[k].outline;
         cp_encounter_pair *pair = &encounter->pair[index[0]][index[1]];
@@ -455,31 +321,30 @@ void cp_encounter_apply_forces(cp_encounter *encounter, double time_step_s)
 }
 
 // Work of a pair's forces over the step: force times mean of the relative velocities at its point
-// before and after. The friction spring follows the motion.
-static bool settle_pair(cp_encounter *encounter, cp_encounter_pair *pair, double time_step_s)
+// before and after. The friction spring follows the motion. Returns how hard it pressed.
+static double settle_pair(cp_encounter *encounter, cp_encounter_pair *pair, double time_step_s)
 {
     cp_vec2 normal = pair->manifold.normal, tangent = {-normal.y, normal.x};
-    bool pressed = false;
+    double pressed_n = 0.0;
     for (int k = 0; k < pair->manifold.count; k++) {
         cp_vec2 after_m_s = relative_velocity(pair, pair->manifold.point[k].position_m);
         double mean_m_s = 0.5 * cp_vec2_dot(cp_vec2_add(pair->relative_m_s[k], after_m_s), normal);
         encounter->normal_work_j += pair->press_n[k] * mean_m_s * time_step_s;
-        pressed = pressed || pair->press_n[k] > 0.0;
+        pressed_n += pair->press_n[k];
     }
     double before_m_s = cp_vec2_dot(pair->relative_m_s[2], tangent);
     double after_m_s = cp_vec2_dot(relative_velocity(pair, pair->friction_at_m), tangent);
     encounter->friction_work_j += pair->drag_n * 0.5 * (before_m_s + after_m_s) * time_step_s;
     pair->stuck_m += after_m_s * time_step_s;
-    return pressed;
+    return pressed_n;
 }
 
-bool cp_encounter_end_step(cp_encounter *encounter, double time_step_s)
+double cp_encounter_end_step(cp_encounter *encounter, double time_step_s)
 {
-    bool pressed = false;
+    double pressed_n = 0.0;
     for (int k = 0; k < encounter->touching_count; k++) {
         const int *index = encounter->touching[k].outline;
-        if (settle_pair(encounter, &encounter->pair[index[0]][index[1]], time_step_s))
-            pressed = true;
+        pressed_n += settle_pair(encounter, &encounter->pair[index[0]][index[1]], time_step_s);
     }
-    return pressed;
+    return pressed_n;
 }

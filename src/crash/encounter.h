@@ -71,9 +71,12 @@ double cp_encounter_distance(const cp_encounter *encounter, const cp_displacemen
 /* Once both parties are set: stiffness and damping of every pair. */
 void cp_encounter_set_pairs(cp_encounter *encounter);
 
+/* The crush block whose outline it is; NULL: the outline of something else, or the barrier. */
+cp_crush_block *cp_encounter_block(const cp_encounter *encounter, int party, int outline);
+
 /* Detect contact and put its forces on the bodies for the coming step. */
 void cp_encounter_apply_forces(cp_encounter *encounter, double time_step_s);
-/* After the step: work done; whether any contact carried force. */
-bool cp_encounter_end_step(cp_encounter *encounter, double time_step_s);
+/* After the step: work done; returns the sum of the forces that the contacts pressed with, N. */
+double cp_encounter_end_step(cp_encounter *encounter, double time_step_s);
 
 #endif

@@ -448,6 +448,7 @@ static void apply_axial(cp_car *car, cp_axial_element *element)
     force_n += element->rate_n;
     push_apart(car->body[element->front], car->body[element->rear],
                cp_vec2_scale(view.direction, force_n), view.point_m);
+    car->elastic_j += cp_crush_elastic_energy(&element->law, &element->state, view.s_m);
 }
 
 static double bending_rotation(const cp_car *car, const cp_bending_element *element)
@@ -459,8 +460,9 @@ static double bending_rotation(const cp_car *car, const cp_bending_element *elem
 
 static void apply_bending(cp_car *car, cp_bending_element *element)
 {
-    double moment_nm =
-        cp_bending_moment(&element->law, &element->state, bending_rotation(car, element));
+    double rotation_rad = bending_rotation(car, element);
+    double moment_nm = cp_bending_moment(&element->law, &element->state, rotation_rad);
+    car->elastic_j += cp_bending_elastic_energy(&element->law, &element->state, rotation_rad);
     dBodyAddTorque(car->body[element->outer], 0.0, 0.0, -moment_nm);
     dBodyAddTorque(car->body[element->inner], 0.0, 0.0, moment_nm);
 }
@@ -493,6 +495,8 @@ static void apply_tie(cp_car *car, cp_tie_element *tie)
         tie->plastic_j += yield_n * cp_vec2_length(slip_m);
         elastic_m = cp_vec2_scale(elastic_m, share);
     }
+
+    car->elastic_j += 0.5 * stiffness_n_m * cp_vec2_dot(elastic_m, elastic_m);
 
     // On the engine towards the longitudinal, and back, at the engine's end.
     dBodyID engine = car->body[CP_BODY_ENGINE];
@@ -546,6 +550,7 @@ void cp_car_apply_forces(cp_car *car)
 {
     for (int k = 0; k < CP_HINGE_COUNT; k++)
         car->hinge_gap_m[k] = hinge_gap(car->hinge[k]);
+    car->elastic_j = 0.0;
     for (int k = 0; k < CP_AXIAL_COUNT; k++)
         apply_axial(car, &car->axial[k]);
     for (int k = 0; k < CP_BENDING_COUNT; k++)
@@ -560,12 +565,13 @@ void cp_car_after_step(cp_car *car, double time_step_s)
         mend_hinge(car, k, time_step_s);
 
     // Work over the step: the force times the mean of the rates before and after.
+    double compression_m[CP_AXIAL_COUNT];
     for (int k = 0; k < CP_AXIAL_COUNT; k++) {
         cp_axial_element *element = &car->axial[k];
-        if (element->rate_n == 0.0)
-            continue;
-        double rate_m_s = 0.5 * (element->rate_m_s + view_axial(car, element).rate_m_s);
+        axial_view after = view_axial(car, element);
+        double rate_m_s = 0.5 * (element->rate_m_s + after.rate_m_s);
         element->rate_j += element->rate_n * rate_m_s * time_step_s;
+        compression_m[k] = after.s_m;
     }
     for (int k = 0; k < CP_TIE_COUNT; k++) {
         const cp_tie_element *tie = &car->tie[k];
@@ -575,11 +581,8 @@ void cp_car_after_step(cp_car *car, double time_step_s)
     }
 
     // Shortening of each side: longitudinal and crash box together.
-    for (int side = 0; side < 2; side++) {
-        double shortening_m =
-            view_axial(car, &car->axial[side]).s_m + view_axial(car, &car->axial[2 + side]).s_m;
-        car->crush_m = fmax(car->crush_m, shortening_m);
-    }
+    for (int side = 0; side < 2; side++)
+        car->crush_m = fmax(car->crush_m, compression_m[side] + compression_m[2 + side]);
     car->intrusion_m = fmax(car->intrusion_m, car->block[CP_BLOCK_CELL].s_m);
     for (int k = 0; k < car->block_count; k++)
         car->intrusion_m = fmax(car->intrusion_m, block_intrusion(car, k));

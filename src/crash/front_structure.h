@@ -109,7 +109,8 @@ typedef struct cp_car {
     dJointID hinge[CP_HINGE_COUNT];
     dJointFeedback hinge_feedback[CP_HINGE_COUNT];
     cp_vec2 hinge_gap_m[CP_HINGE_COUNT]; /* between its two anchors at the step's beginning */
-    double mount_damping_j;              /* dissipated by the dampers of the engine's ties so far */
+    double elastic_j;       /* stored in its parts at the beginning of the present step */
+    double mount_damping_j; /* dissipated by the dampers of the engine's ties so far */
     double intrusion_m; /* deepest that a used up block has been pushed into the passenger cell */
     double crush_m;     /* largest shortening bumper to firewall so far */
 } cp_car;
@@ -120,7 +121,7 @@ typedef struct cp_car {
 CP_MUST_CHECK cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model, dWorldID world,
                                      const cp_body_state *state, cp_error *error);
 
-/* Put all forces of the coming step on the bodies. */
+/* Put all forces of the coming step on the bodies, and take elastic_j. */
 void cp_car_apply_forces(cp_car *car);
 /* After the step: what the dampers took, how far it is crushed; angular momentum mended where a
  * hinge's two anchors have drifted apart. */

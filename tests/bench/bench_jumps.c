@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* bench_jumps [--cases N] [--seed S] [--vehicle NAME|FILE]... [--database STUDY.db] [--threads T]
- *             [--at-most SHARE] [--at-most-small SHARE]
+ *             [--at-most SHARE] [--at-most-small SHARE] [--list FILE.csv]
  *
  * How often a crash's OLC jumps: crashes front against front, drawn uniformly (5 to 60 km/h each,
  * every offset of either side, up to 30 degrees either way), or those of a study's database with
@@ -10,7 +10,7 @@
  * fronts alone, not flanks of turned cars. Drawn crashes of less than 0.1 are held against the full
  * overlap at the same speeds too. Exit code 1 where a share of the drawn crashes exceeds --at-most
  * (all) or
- * --at-most-small (small overlap). */
+ * --at-most-small (small overlap). --list: the crashes that jump, a row a change. */
 #include "calibrate/parallel.h"
 #include "calibrate/suite_case.h"
 #include "core/progress.h"
@@ -39,6 +39,7 @@ typedef struct arguments {
     const char *vehicle[VEHICLES_MAX];
     size_t vehicle_count;
     const char *database;
+    const char *list;
     double at_most_1; /* NAN: no limit */
     double at_most_small_1;
 } arguments;
@@ -50,7 +51,8 @@ typedef struct jump_case {
     double overlap_1;         /* NAN: not front against front */
     double olc_g[2];          /* NAN: not struck in front; 0: left-censored */
     double change_g[CHANGES]; /* largest of its cars */
-    double full_olc_g;        /* at full overlap, where the overlap is a touch; else NAN */
+    double changed_olc_g[CHANGES][2];
+    double full_olc_g; /* at full overlap, where the overlap is a touch; else NAN */
     bool failed;
 } jump_case;
 
@@ -147,7 +149,7 @@ static void run_case(void *context, size_t k)
     one->full_olc_g = NAN;
     one->failed = !simulate(one, &one->configuration, one->olc_g);
     for (int change = 0; !one->failed && change < CHANGES; change++) {
-        double olc_g[2];
+        double *olc_g = one->changed_olc_g[change];
         cp_crash_configuration configuration = changed(one, change);
         one->failed = !simulate(one, &configuration, olc_g);
         one->change_g[change] = 0.0;
@@ -348,6 +350,30 @@ static bool print_run(const char *what, const jump_run *run, double at_most_1,
     return kept;
 }
 
+static void list_jumps(const char *path, const jump_run *run)
+{
+    FILE *file = fopen(path, "w");
+    if (file == NULL)
+        stop("the list cannot be written");
+    fprintf(file, "crash,change,overlap_1,speed_a_km_h,speed_b_km_h,angle_deg,olc_a_g,olc_b_g,"
+                  "changed_olc_a_g,changed_olc_b_g\n");
+    for (size_t k = 0; k < run->count; k++) {
+        const jump_case *one = &run->one[k];
+        const cp_body_state *state = one->configuration.vehicle;
+        for (int change = 0; change < CHANGES; change++)
+            if (!one->failed && jumps(one, change))
+                fprintf(file, "%zu,%s,%.3f,%.1f,%.1f,%.1f,%.2f,%.2f,%.2f,%.2f\n", k,
+                        CHANGE_TEXT[change], one->overlap_1,
+                        cp_km_h_from_m_s(cp_vec2_length(state[0].velocity_m_s)),
+                        cp_km_h_from_m_s(cp_vec2_length(state[1].velocity_m_s)),
+                        cp_deg_from_rad(cp_wrap_angle(state[1].yaw_rad - state[0].yaw_rad)),
+                        one->olc_g[0], one->olc_g[1], one->changed_olc_g[change][0],
+                        one->changed_olc_g[change][1]);
+    }
+    if (fclose(file) != 0)
+        stop("the list cannot be written");
+}
+
 // ---- all of it ---------------------------------------------------------------------------------
 
 static double number(const char *text, double smallest, double largest)
@@ -380,11 +406,14 @@ static arguments read_arguments(int argc, char **argv)
             a.at_most_small_1 = number(value, 0, 1);
         else if (strcmp(argv[k], "--database") == 0)
             a.database = value;
+        else if (strcmp(argv[k], "--list") == 0)
+            a.list = value;
         else if (strcmp(argv[k], "--vehicle") == 0 && a.vehicle_count < VEHICLES_MAX)
             a.vehicle[a.vehicle_count++] = value;
         else
             stop("usage: bench_jumps [--cases N] [--seed S] [--vehicle NAME|FILE]... "
-                 "[--database STUDY.db] [--threads T] [--at-most SHARE] [--at-most-small SHARE]");
+                 "[--database STUDY.db] [--threads T] [--at-most SHARE] [--at-most-small SHARE] "
+                 "[--list FILE.csv]");
     }
     if (a.vehicle_count == 0)
         a.vehicle[a.vehicle_count++] = "honda_accord_2014";
@@ -399,6 +428,8 @@ static bool run_and_print(const arguments *a, const char *what, jump_run *run, b
         stop(error.text);
     bool kept = print_run(what, run, limited ? a->at_most_1 : (double)NAN,
                           limited ? a->at_most_small_1 : (double)NAN);
+    if (a->list != NULL)
+        list_jumps(a->list, run);
     fprintf(stderr, "%.0f s\n", cp_clock_s() - started_s);
     free(run->one);
     return kept;

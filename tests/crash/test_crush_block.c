@@ -24,20 +24,22 @@ static void it_resists_as_its_law_and_its_rate_say(void **state)
 {
     (void)state;
     cp_crush_block block = {.law = LAW, .s_m = 0.25, .share_1 = 1.0};
-    assert_near(cp_crush_block_resistance(&block, 0.0, 0.0005), 40e3, 1e-6);
-    assert_near(cp_crush_block_resistance(&block, 0.1, 0.0005), 50e3, 1e-6);
+    assert_near(cp_crush_block_resistance(&block, 0.0, 0.0005).force_n, 40e3, 1e-6);
+    assert_near(cp_crush_block_resistance(&block, 0.1, 0.0005).force_n, 50e3, 1e-6);
 
     // 5 mm within 0.5 ms is 10 m/s: a tenth of the 40 kN more.
     block.rate_gain_1 = 0.1;
-    assert_near(cp_crush_block_resistance(&block, 0.005, 0.0005), 40.5e3 + 4000.0, 1e-6);
+    assert_near(cp_crush_block_resistance(&block, 0.005, 0.0005).force_n, 40.5e3 + 4000.0, 1e-6);
 
     // The stop has no rate: only what still collapses counts.
     block.s_m = 0.5;
-    assert_near(cp_crush_block_resistance(&block, 0.005, 0.0005), 60e3 + 220e3 + 6000.0, 1e-6);
+    assert_near(cp_crush_block_resistance(&block, 0.005, 0.0005).force_n, 60e3 + 220e3 + 6000.0,
+                1e-6);
 
     // Pressed on over half of its face it resists by half.
     block.share_1 = 0.5;
-    assert_near(cp_crush_block_resistance(&block, 0.005, 0.0005), 0.5 * (280e3 + 6000.0), 1e-6);
+    assert_near(cp_crush_block_resistance(&block, 0.005, 0.0005).force_n, 0.5 * (280e3 + 6000.0),
+                1e-6);
 }
 
 static void its_slope_is_that_of_its_resistance(void **state)
@@ -46,10 +48,10 @@ static void its_slope_is_that_of_its_resistance(void **state)
     static const double AT_M[] = {0.01, 0.2, 0.44, 0.6};
     for (size_t k = 0; k < sizeof AT_M / sizeof *AT_M; k++) {
         cp_crush_block block = {.law = LAW, .s_m = AT_M[k], .rate_gain_1 = 0.3, .share_1 = 0.7};
-        double more = cp_crush_block_resistance(&block, 0.0020001, 0.0005);
-        double less = cp_crush_block_resistance(&block, 0.0019999, 0.0005);
-        assert_near(cp_crush_block_slope(&block, 0.002, 0.0005), (more - less) / 2e-7,
-                    1e-4 * more / 0.002);
+        double more = cp_crush_block_resistance(&block, 0.0020001, 0.0005).force_n;
+        double less = cp_crush_block_resistance(&block, 0.0019999, 0.0005).force_n;
+        assert_near(cp_crush_block_resistance(&block, 0.002, 0.0005).slope_n_m,
+                    (more - less) / 2e-7, 1e-4 * more / 0.002);
     }
 }
 
@@ -60,7 +62,7 @@ static void settling_counts_every_joule_once(void **state)
     double rate_j = 0.0;
     for (int k = 0; k < 600; k++) {
         block.slip_m = 0.001;
-        double force_n = cp_crush_block_resistance(&block, 0.001, 0.0005);
+        double force_n = cp_crush_block_resistance(&block, 0.001, 0.0005).force_n;
         double collapse_n = 0.25 * cp_crush_loading_force(&block.law, block.s_m + 0.001);
         rate_j += (force_n - collapse_n) * 0.001;
         cp_crush_block_settle(&block, 0.0005);
@@ -85,8 +87,8 @@ static void sideways_it_yields_both_ways(void **state)
     assert_near(block.side_m, 0.2, 1e-12);
     assert_near(block.side_way_m, 0.4, 1e-12);
     assert_near(block.plastic_j, cp_crush_loading_work(&LAW, 0.4), 1e-9);
-    assert_near(cp_crush_block_side_resistance(&block, -0.02), cp_crush_loading_force(&LAW, 0.42),
-                1e-9);
+    assert_near(cp_crush_block_side_resistance(&block, -0.02).force_n,
+                cp_crush_loading_force(&LAW, 0.42), 1e-9);
 }
 
 // A car whose front is its upper load path alone, two halves of 150 kN, beside boxes of 5 kN each.

@@ -163,7 +163,7 @@ static void strain_rate_follows_the_fifth_root_up_to_its_limit(void **state)
     for (double rate_m_s = 0.1; rate_m_s < 30.0; rate_m_s *= 1.37) {
         double more = cp_strain_rate_factor(0.2, rate_m_s + 1e-6);
         double less = cp_strain_rate_factor(0.2, rate_m_s - 1e-6);
-        assert_near(cp_strain_rate_slope(0.2, rate_m_s), (more - less) / 2e-6, 1e-6);
+        assert_near(cp_strain_rate_at(0.2, rate_m_s).slope_s_m, (more - less) / 2e-6, 1e-6);
     }
 }
 

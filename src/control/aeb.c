@@ -44,9 +44,10 @@ enum {
 static const cp_control_parameter PARAMETERS[] = {
     [PENETRATION_1] = CP_CONTROL_PENETRATION,
     [TTC_S] = {"ttc_s", 1.2, 0.1, 5.0, "brake request below this time to collision, s (assumed)"},
-    [REQUIRED_M_S2] = {"required_deceleration_m_s2", 3.0, 0.0, 20.0,
+    [REQUIRED_M_S2] = {"required_deceleration_m_s2", CP_LOOKOUT_EASY_BRAKING_M_S2, 0.0, 20.0,
                        "and when avoiding the contact takes at least this deceleration, m/s^2: "
-                       "closing speed / (2 TTC) (assumed)"},
+                       "closing speed / (2 TTC) (assumed: what SUMO's drivers brake at ease by "
+                       "default; with less it acts for what they would have met)"},
     [DECELERATION_M_S2] = {"deceleration_m_s2", 8.0, 0.5, 12.0,
                            "deceleration asked for, m/s^2 (assumed; UN Regulation 152 asks for 5 "
                            "at least)"},

@@ -41,9 +41,9 @@ enum {
 static const cp_control_parameter PARAMETERS[] = {
     [PENETRATION_1] = CP_CONTROL_PENETRATION,
     [TTC_S] = {"ttc_s", 2.4, 0.1, 10.0, "warning below this time to collision, s (assumed)"},
-    [REQUIRED_M_S2] = {"required_deceleration_m_s2", 3.5, 0.0, 20.0,
+    [REQUIRED_M_S2] = {"required_deceleration_m_s2", CP_LOOKOUT_EASY_BRAKING_M_S2, 0.0, 20.0,
                        "and when avoiding the contact takes at least this deceleration, m/s^2 "
-                       "(assumed: more than drivers brake at ease)"},
+                       "(assumed: what SUMO's drivers brake at ease by default)"},
     [REACTION_MEDIAN_S] = {"reaction_median_s", 1.0, 0.0, 5.0,
                            "median of the drivers' reaction time from warning to brake, s "
                            "(assumed)"},

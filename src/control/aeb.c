@@ -96,6 +96,7 @@ static const cp_control_parameter PARAMETERS[] = {
 typedef struct aeb_car {
     cp_braking braking;
     cp_target_class class; /* of the threat it acts on */
+    bool has_cause;        /* that the study made */
     bool is_false;         /* braking for nothing, until false_until_s */
     double false_until_s;
     double next_false_s;      /* SUMO clock; 0: not drawn yet */
@@ -112,6 +113,7 @@ typedef struct aeb {
     size_t activations;
     size_t of_class[CP_TARGET_CLASSES];
     size_t false_activations;
+    size_t without_error;
     double braking_s;
 } aeb;
 
@@ -199,9 +201,12 @@ static cp_status watch(aeb *self, const cp_control_context *context,
         request(self, car, threat.instant_s);
         car->class = threat.class;
         car->is_false = false;
+        car->has_cause =
+            cp_controls_has_cause(context->controls, motion->after.vehicle, threat.vehicle);
     } else if (is_false_alarm(self, context, motion->after.vehicle, car, &instant_s)) {
         request(self, car, instant_s);
         car->is_false = true;
+        car->has_cause = false;
         car->false_until_s = car->braking.brake.start_s + parameter[FALSE_DURATION_S];
     }
     return CP_OK;
@@ -233,6 +238,7 @@ static cp_status follow(aeb *self, const cp_control_context *context,
 static void count_activation(aeb *self, const aeb_car *car)
 {
     self->activations++;
+    self->without_error += !car->has_cause;
     if (car->is_false)
         self->false_activations++;
     else
@@ -299,6 +305,7 @@ static size_t counters(const void *state, const char **names, double *values, si
         {"activations_oncoming", (double)self->of_class[CP_TARGET_ONCOMING]},
         {"activations_crossing", (double)self->of_class[CP_TARGET_CROSSING]},
         {"activations_turning", (double)self->of_class[CP_TARGET_TURNING]},
+        {"activations_without_error", (double)self->without_error},
         {"activations_for_nothing", (double)self->false_activations},
         {"braking_s", self->braking_s},
     };

@@ -81,6 +81,7 @@ static cp_status create_one(cp_controls *controls, active_control *active,
         .traffic = controls->traffic,
         .ignored = controls->ignored,
         .view = controls->view,
+        .controls = controls,
         .seed_key = cp_rng_key_text(replication_key, settings->type->name),
         .parameter = active->settings.parameter,
         .equipment = &active->equipment,
@@ -178,9 +179,8 @@ double cp_controls_brake_request_m_s2(const cp_controls *controls, uint32_t vehi
     return cp_actuation_deceleration_m_s2(&controls->actuation, vehicle);
 }
 
-bool cp_controls_is_at_fault(void *context, uint32_t vehicle)
+static bool is_at_fault(const cp_controls *controls, uint32_t vehicle)
 {
-    const cp_controls *controls = context;
     for (size_t k = 0; k < controls->count; k++) {
         const active_control *active = &controls->active[k];
         const cp_control_type *type = active->settings.type;
@@ -188,6 +188,17 @@ bool cp_controls_is_at_fault(void *context, uint32_t vehicle)
             return true;
     }
     return false;
+}
+
+bool cp_controls_is_at_fault(void *context, uint32_t vehicle)
+{
+    return is_at_fault(context, vehicle);
+}
+
+bool cp_controls_has_cause(const cp_controls *controls, uint32_t own, uint32_t target)
+{
+    return is_at_fault(controls, own) || is_at_fault(controls, target) ||
+           cp_traffic_is_held(controls->traffic, target);
 }
 
 bool cp_controls_errs_alone(const cp_controls *controls, uint32_t vehicle)

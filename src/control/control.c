@@ -11,7 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define COUNTERS_MAX 16
+
 typedef struct active_control {
+    double uncounted[COUNTERS_MAX]; /* its counters when the warm-up ended */
     cp_control_settings settings;
     cp_control_context context;
     cp_equipment equipment;
@@ -224,8 +227,6 @@ double cp_controls_error_since_s(const cp_controls *controls, uint32_t vehicle, 
     return since_s;
 }
 
-#define COUNTERS_MAX 16
-
 // Counters of one control under "name.counter"; false when memory is gone.
 static bool add_counters(json_t *object, const active_control *active)
 {
@@ -244,10 +245,20 @@ static bool add_counters(json_t *object, const active_control *active)
     for (size_t k = 0; k < count; k++) {
         char key[128];
         snprintf(key, sizeof key, "%s.%s", type->name, names[k]);
-        if (json_object_set_new(object, key, json_real(values[k])) != 0)
+        if (json_object_set_new(object, key, json_real(values[k] - active->uncounted[k])) != 0)
             return false;
     }
     return true;
+}
+
+void cp_controls_count_from_now(cp_controls *controls)
+{
+    for (size_t k = 0; k < controls->count; k++) {
+        active_control *active = &controls->active[k];
+        const char *names[COUNTERS_MAX];
+        if (active->settings.type->counters != NULL)
+            active->settings.type->counters(active->state, names, active->uncounted, COUNTERS_MAX);
+    }
 }
 
 cp_status cp_controls_counters_json(const cp_controls *controls, char **json, cp_error *error)

@@ -118,6 +118,8 @@ double cp_controls_error_since_s(const cp_controls *controls, uint32_t vehicle, 
 bool cp_controls_has_cause(const cp_controls *controls, uint32_t own, uint32_t target);
 /* Deceleration that the functions ask of a vehicle in the coming step, m/s^2; 0 for none. */
 double cp_controls_brake_request_m_s2(const cp_controls *controls, uint32_t vehicle);
+/* What has been counted so far does not count: the warm-up is over. */
+void cp_controls_count_from_now(cp_controls *controls);
 /* Counters of all controls, "aeb.activations" style, as one JSON object text; caller frees. */
 CP_MUST_CHECK cp_status cp_controls_counters_json(const cp_controls *controls, char **json,
                                                   cp_error *error);

@@ -44,9 +44,10 @@ enum {
 static const cp_control_parameter PARAMETERS[] = {
     [PENETRATION_1] = CP_CONTROL_PENETRATION,
     [TTC_S] = {"ttc_s", 1.2, 0.1, 5.0, "brake request below this time to collision, s (assumed)"},
-    [REQUIRED_M_S2] = {"required_deceleration_m_s2", 3.0, 0.0, 20.0,
+    [REQUIRED_M_S2] = {"required_deceleration_m_s2", CP_LOOKOUT_EASY_BRAKING_M_S2, 0.0, 20.0,
                        "and when avoiding the contact takes at least this deceleration, m/s^2: "
-                       "closing speed / (2 TTC) (assumed)"},
+                       "closing speed / (2 TTC) (assumed: what SUMO's drivers brake at ease by "
+                       "default; with less it acts for what they would have met)"},
     [DECELERATION_M_S2] = {"deceleration_m_s2", 8.0, 0.5, 12.0,
                            "deceleration asked for, m/s^2 (assumed; UN Regulation 152 asks for 5 "
                            "at least)"},
@@ -95,6 +96,7 @@ static const cp_control_parameter PARAMETERS[] = {
 typedef struct aeb_car {
     cp_braking braking;
     cp_target_class class; /* of the threat it acts on */
+    bool has_cause;        /* that the study made */
     bool is_false;         /* braking for nothing, until false_until_s */
     double false_until_s;
     double next_false_s;      /* SUMO clock; 0: not drawn yet */
@@ -111,6 +113,7 @@ typedef struct aeb {
     size_t activations;
     size_t of_class[CP_TARGET_CLASSES];
     size_t false_activations;
+    size_t without_error;
     double braking_s;
 } aeb;
 
@@ -198,9 +201,12 @@ static cp_status watch(aeb *self, const cp_control_context *context,
         request(self, car, threat.instant_s);
         car->class = threat.class;
         car->is_false = false;
+        car->has_cause =
+            cp_controls_has_cause(context->controls, motion->after.vehicle, threat.vehicle);
     } else if (is_false_alarm(self, context, motion->after.vehicle, car, &instant_s)) {
         request(self, car, instant_s);
         car->is_false = true;
+        car->has_cause = false;
         car->false_until_s = car->braking.brake.start_s + parameter[FALSE_DURATION_S];
     }
     return CP_OK;
@@ -232,6 +238,7 @@ static cp_status follow(aeb *self, const cp_control_context *context,
 static void count_activation(aeb *self, const aeb_car *car)
 {
     self->activations++;
+    self->without_error += !car->has_cause;
     if (car->is_false)
         self->false_activations++;
     else
@@ -298,6 +305,7 @@ static size_t counters(const void *state, const char **names, double *values, si
         {"activations_oncoming", (double)self->of_class[CP_TARGET_ONCOMING]},
         {"activations_crossing", (double)self->of_class[CP_TARGET_CROSSING]},
         {"activations_turning", (double)self->of_class[CP_TARGET_TURNING]},
+        {"activations_without_error", (double)self->without_error},
         {"activations_for_nothing", (double)self->false_activations},
         {"braking_s", self->braking_s},
     };

@@ -11,7 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define COUNTERS_MAX 16
+
 typedef struct active_control {
+    double uncounted[COUNTERS_MAX]; /* its counters when the warm-up ended */
     cp_control_settings settings;
     cp_control_context context;
     cp_equipment equipment;
@@ -81,6 +84,7 @@ static cp_status create_one(cp_controls *controls, active_control *active,
         .traffic = controls->traffic,
         .ignored = controls->ignored,
         .view = controls->view,
+        .controls = controls,
         .seed_key = cp_rng_key_text(replication_key, settings->type->name),
         .parameter = active->settings.parameter,
         .equipment = &active->equipment,
@@ -178,9 +182,8 @@ double cp_controls_brake_request_m_s2(const cp_controls *controls, uint32_t vehi
     return cp_actuation_deceleration_m_s2(&controls->actuation, vehicle);
 }
 
-bool cp_controls_is_at_fault(void *context, uint32_t vehicle)
+static bool is_at_fault(const cp_controls *controls, uint32_t vehicle)
 {
-    const cp_controls *controls = context;
     for (size_t k = 0; k < controls->count; k++) {
         const active_control *active = &controls->active[k];
         const cp_control_type *type = active->settings.type;
@@ -188,6 +191,17 @@ bool cp_controls_is_at_fault(void *context, uint32_t vehicle)
             return true;
     }
     return false;
+}
+
+bool cp_controls_is_at_fault(void *context, uint32_t vehicle)
+{
+    return is_at_fault(context, vehicle);
+}
+
+bool cp_controls_has_cause(const cp_controls *controls, uint32_t own, uint32_t target)
+{
+    return is_at_fault(controls, own) || is_at_fault(controls, target) ||
+           cp_traffic_is_held(controls->traffic, target);
 }
 
 bool cp_controls_errs_alone(const cp_controls *controls, uint32_t vehicle)
@@ -213,8 +227,6 @@ double cp_controls_error_since_s(const cp_controls *controls, uint32_t vehicle, 
     return since_s;
 }
 
-#define COUNTERS_MAX 16
-
 // Counters of one control under "name.counter"; false when memory is gone.
 static bool add_counters(json_t *object, const active_control *active)
 {
@@ -233,10 +245,20 @@ static bool add_counters(json_t *object, const active_control *active)
     for (size_t k = 0; k < count; k++) {
         char key[128];
         snprintf(key, sizeof key, "%s.%s", type->name, names[k]);
-        if (json_object_set_new(object, key, json_real(values[k])) != 0)
+        if (json_object_set_new(object, key, json_real(values[k] - active->uncounted[k])) != 0)
             return false;
     }
     return true;
+}
+
+void cp_controls_count_from_now(cp_controls *controls)
+{
+    for (size_t k = 0; k < controls->count; k++) {
+        active_control *active = &controls->active[k];
+        const char *names[COUNTERS_MAX];
+        if (active->settings.type->counters != NULL)
+            active->settings.type->counters(active->state, names, active->uncounted, COUNTERS_MAX);
+    }
 }
 
 cp_status cp_controls_counters_json(const cp_controls *controls, char **json, cp_error *error)

@@ -39,11 +39,12 @@ typedef struct cp_control_parameter {
 typedef struct cp_control_context {
     const cp_traffic *traffic;
     cp_rng_key seed_key;
-    const double *parameter;         /* by index of the type's parameter table */
-    cp_equipment *equipment;         /* of functions: who has it */
-    cp_actuation *actuation;         /* of functions: where to ask for braking */
-    struct cp_ignored_foes *ignored; /* shared by all (driver_error/ignored_foes.h) */
-    struct cp_road_view *view;       /* likewise (road_view.h) */
+    const double *parameter;            /* by index of the type's parameter table */
+    cp_equipment *equipment;            /* of functions: who has it */
+    cp_actuation *actuation;            /* of functions: where to ask for braking */
+    struct cp_ignored_foes *ignored;    /* shared by all (driver_error/ignored_foes.h) */
+    struct cp_road_view *view;          /* likewise (road_view.h) */
+    const struct cp_controls *controls; /* it is one of these: for cp_controls_has_cause */
 } cp_control_context;
 
 /* A kind of control. create/step/destroy handle its mutable state of one replication. */
@@ -112,8 +113,13 @@ bool cp_controls_errs_alone(const cp_controls *controls, uint32_t vehicle);
 /* Since when a control has had the vehicle err towards that other, SUMO clock; INFINITY: none does.
  */
 double cp_controls_error_since_s(const cp_controls *controls, uint32_t vehicle, uint32_t other);
+/* Whether a function that acts on own towards target has a cause that the study made: one of the
+ * two errs, or the target is a wreck that stays on the road. */
+bool cp_controls_has_cause(const cp_controls *controls, uint32_t own, uint32_t target);
 /* Deceleration that the functions ask of a vehicle in the coming step, m/s^2; 0 for none. */
 double cp_controls_brake_request_m_s2(const cp_controls *controls, uint32_t vehicle);
+/* What has been counted so far does not count: the warm-up is over. */
+void cp_controls_count_from_now(cp_controls *controls);
 /* Counters of all controls, "aeb.activations" style, as one JSON object text; caller frees. */
 CP_MUST_CHECK cp_status cp_controls_counters_json(const cp_controls *controls, char **json,
                                                   cp_error *error);

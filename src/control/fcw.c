@@ -11,7 +11,14 @@
 /* Forward collision warning. At the first instant inside the step at which a known target is a
  * threat (lookout.h), by default of the same direction or oncoming, the driver is warned; a share
  * of drivers heeds it and brakes after a log-normally distributed reaction time, until the danger
- * has passed. SUMO's driver stays in charge of everything else and may brake earlier or harder. */
+ * has passed. SUMO's driver stays in charge of everything else and may brake earlier or harder.
+ *
+ * A warning is borne out when the two bodies touch, or one of the two drivers brakes harder than at
+ * ease, within the TTC and BEARS_OUT_S more. The own car's braking counts as long as the warned
+ * driver does not brake for the warning: with compliance_1 0 the traffic is as without the
+ * function, and what is not borne out was for nothing. */
+#define BEARS_OUT_S 2.0
+#define HARDER_M_S2 0.1 /* than at ease: rounding */
 
 enum {
     PENETRATION_1,
@@ -41,9 +48,9 @@ enum {
 static const cp_control_parameter PARAMETERS[] = {
     [PENETRATION_1] = CP_CONTROL_PENETRATION,
     [TTC_S] = {"ttc_s", 2.4, 0.1, 10.0, "warning below this time to collision, s (assumed)"},
-    [REQUIRED_M_S2] = {"required_deceleration_m_s2", 3.5, 0.0, 20.0,
+    [REQUIRED_M_S2] = {"required_deceleration_m_s2", CP_LOOKOUT_EASY_BRAKING_M_S2, 0.0, 20.0,
                        "and when avoiding the contact takes at least this deceleration, m/s^2 "
-                       "(assumed: more than drivers brake at ease)"},
+                       "(assumed: what SUMO's drivers brake at ease by default)"},
     [REACTION_MEDIAN_S] = {"reaction_median_s", 1.0, 0.0, 5.0,
                            "median of the drivers' reaction time from warning to brake, s "
                            "(assumed)"},
@@ -88,6 +95,8 @@ typedef struct fcw_car {
     cp_braking braking;
     bool is_warned; /* from the warning until the danger has passed */
     uint64_t warnings;
+    uint32_t target; /* of the last warning, */
+    double until_s;  /* looked at until then, SUMO clock */
 } fcw_car;
 
 typedef struct fcw {
@@ -98,6 +107,8 @@ typedef struct fcw {
     cp_vehicle_table cars; /* an fcw_car of each */
     size_t warnings;
     size_t heeded;
+    size_t without_error;
+    size_t borne_out;
     double braking_s;
 } fcw;
 
@@ -163,7 +174,11 @@ static cp_status watch(fcw *self, const cp_control_context *context,
                             cp_rng_normal(cp_rng_key_text(key, "reaction"), car->warnings++));
     self->warnings++;
     self->heeded += heeds;
+    self->without_error +=
+        !cp_controls_has_cause(context->controls, motion->after.vehicle, threat.vehicle);
     car->is_warned = true;
+    car->target = threat.vehicle;
+    car->until_s = cp_traffic_time_s(self->traffic) + threat.ttc_s + BEARS_OUT_S;
     car->braking = (cp_braking){0};
     if (!heeds)
         return CP_OK;
@@ -173,9 +188,38 @@ static cp_status watch(fcw *self, const cp_control_context *context,
     return CP_OK;
 }
 
+// Whether two bodies touched in the step that has ended, looked at four times.
+static bool have_touched(const cp_vehicle_motion *one, const cp_vehicle_motion *other)
+{
+    bool is_whole = one->was_present && other->was_present;
+    for (double fraction = is_whole ? 0.25 : 1.0; fraction <= 1.0; fraction += 0.25) {
+        cp_rectangle body = cp_moving_rectangle_inside(one, fraction).rectangle;
+        cp_rectangle other_body = cp_moving_rectangle_inside(other, fraction).rectangle;
+        if (cp_rectangle_separation(&body, &other_body) <= 0.0)
+            return true;
+    }
+    return false;
+}
+
+// Whether what the car was warned of comes.
+static void look_back(fcw *self, const cp_vehicle_motion *motion, fcw_car *car)
+{
+    const double hard_m_s2 = CP_LOOKOUT_EASY_BRAKING_M_S2 + HARDER_M_S2;
+    if (!(cp_traffic_time_s(self->traffic) <= car->until_s))
+        return;
+    const cp_vehicle_motion *target = cp_traffic_motion_of(self->traffic, car->target);
+    bool comes = !car->braking.is_braking && motion->after.acceleration_m_s2 < -hard_m_s2;
+    if (target != NULL)
+        comes |= target->after.acceleration_m_s2 < -hard_m_s2 || have_touched(motion, target);
+    self->borne_out += comes;
+    if (comes || target == NULL)
+        car->until_s = 0.0;
+}
+
 static cp_status step_car(fcw *self, const cp_control_context *context,
                           const cp_vehicle_motion *motion, fcw_car *car, cp_error *error)
 {
+    look_back(self, motion, car);
     // Too slow to act: nothing is looked for, which spares the queues at junctions.
     if (!car->is_warned && motion->after.speed_m_s < context->parameter[SPEED_MIN_M_S]) {
         cp_lookout_forget(&self->lookout, motion->after.vehicle);
@@ -232,15 +276,24 @@ static cp_status step(void *state, const cp_control_context *context, cp_error *
 static size_t counters(const void *state, const char **names, double *values, size_t room)
 {
     const fcw *self = state;
-    if (room < 3)
+    const struct {
+        const char *name;
+        double value;
+    } rows[] = {
+        {"warnings", (double)self->warnings},
+        {"warnings_heeded", (double)self->heeded},
+        {"warnings_without_error", (double)self->without_error},
+        {"warnings_borne_out", (double)self->borne_out},
+        {"braking_s", self->braking_s},
+    };
+    size_t count = sizeof rows / sizeof *rows;
+    if (room < count)
         return 0;
-    names[0] = "warnings";
-    values[0] = (double)self->warnings;
-    names[1] = "warnings_heeded";
-    values[1] = (double)self->heeded;
-    names[2] = "braking_s";
-    values[2] = self->braking_s;
-    return 3;
+    for (size_t k = 0; k < count; k++) {
+        names[k] = rows[k].name;
+        values[k] = rows[k].value;
+    }
+    return count;
 }
 
 const cp_control_type CP_CONTROL_FCW = {

@@ -4,8 +4,11 @@
 #include <string.h>
 
 #define FAR_OFF_M 8.0 /* from its lane: a car pushed off it, or a lane read wrong */
-#define CLOSE_CORNERS_M 1.0
+#define CLOSE_CORNERS_M 0.3
 #define LANES_MAX 24 /* that follow each other within any reach */
+#define CP_TRAIL_POINTS 48
+#define TRAIL_LANES 6
+#define REAR_OFF_1 0.1 /* rad between the heading and the way behind: a lane change is less */
 
 // Without the care for overflow that hypot takes: this is asked millions of times.
 static double length_of(cp_vec2 vector)
@@ -107,12 +110,15 @@ static void follow_lanes(layer *on, uint32_t number, size_t first, const uint32_
             ahead->ends_m = way_m;
             return;
         }
-        bool was_inside = lane->is_inside;
-        number = cp_lane_map_next(on->map, number, next_count > 0 ? next_lanes[0] : CP_LANE_NONE);
+        const cp_lane_link *link =
+            cp_lane_map_link(on->map, number, next_count > 0 ? next_lanes[0] : CP_LANE_NONE);
+        number = link == NULL ? CP_LANE_NONE : link->via != CP_LANE_NONE ? link->via : link->to;
         const cp_lane *next = cp_lane_map_lane(on->map, number);
-        // Between two lanes inside one junction SUMO's drivers wait for those who go first.
-        if (was_inside && next != NULL && next->is_inside)
-            ahead->yields_m = fmin(ahead->yields_m, way_m);
+        // Between two lanes inside one junction SUMO's drivers wait for those who go first, too.
+        bool is_within = lane->is_inside && next != NULL && next->is_inside;
+        if (link != NULL && (link->gives_way || is_within) &&
+            ahead->wait_count < CP_LANE_AHEAD_WAITS)
+            ahead->wait_m[ahead->wait_count++] = way_m;
         // The lane that the route named is reached: the next one counts.
         if (next != NULL && !next->is_inside && next_count > 0) {
             next_lanes++;
@@ -158,24 +164,153 @@ static void shift(cp_lane_ahead *ahead, double left_m, double slope_1)
     }
 }
 
-// What lies behind the front: the way of this step, and the car as it stood before it.
-static void begin_behind(const cp_vehicle_motion *motion, cp_lane_ahead *ahead)
+bool cp_is_put_aside(const cp_vehicle_motion *motion)
+{
+    const cp_vehicle_state *then = &motion->before, *now = &motion->after;
+    if (!motion->was_present)
+        return false;
+    double middle_rad = then->yaw_rad + 0.5 * cp_wrap_angle(now->yaw_rad - then->yaw_rad);
+    cp_vec2 step_m = {now->front_x_m - then->front_x_m, now->front_y_m - then->front_y_m};
+    cp_vec2 along = cp_vec2_heading(middle_rad);
+    double aside_m = fabs(cp_vec2_cross(along, step_m));
+    return aside_m > 1.0 && aside_m > 0.25 * cp_vec2_dot(along, step_m);
+}
+
+/* What lies behind a front, from there backwards. */
+typedef struct trail {
+    cp_way_point corner[CP_TRAIL_POINTS];
+    size_t count;
+} trail;
+
+static void add_behind(trail *behind, cp_vec2 point_m, uint32_t lane)
+{
+    const cp_way_point *last = &behind->corner[behind->count - 1];
+    double step_m = length_of(cp_vec2_sub(point_m, last->point_m));
+    if (behind->count < CP_TRAIL_POINTS && step_m > 1e-6)
+        behind->corner[behind->count++] =
+            (cp_way_point){point_m, last->way_m - step_m, lane, 0.0, last->z_m};
+}
+
+static double distance_m(const cp_lane *lane, cp_vec2 point_m)
+{
+    foot at = find_foot(lane, point_m);
+    cp_vec2 from_m = flat(&lane->point[at.piece]), to_m = flat(&lane->point[at.piece + 1]);
+    double kept_1 = fmin(fmax(at.share_1, 0.0), 1.0);
+    cp_vec2 there_m = cp_vec2_add(from_m, cp_vec2_scale(cp_vec2_sub(to_m, from_m), kept_1));
+    return length_of(cp_vec2_sub(point_m, there_m));
+}
+
+// Of the lanes that lead here the one on which the rear is, or nearest to it.
+static const cp_lane *lane_behind(const cp_lane_map *map, const cp_lane *lane, cp_vec2 rear_m,
+                                  uint32_t *number)
+{
+    const cp_lane *nearest = NULL;
+    double least_m = INFINITY;
+    for (size_t k = 0; k < lane->from_count; k++) {
+        const cp_lane *from = cp_lane_map_lane(map, lane->from[k]);
+        double here_m = from != NULL ? distance_m(from, rear_m) : INFINITY;
+        if (here_m < least_m) {
+            least_m = here_m;
+            nearest = from;
+            *number = lane->from[k];
+        }
+    }
+    return nearest;
+}
+
+// Back along the lanes, as far off them as the front is, for length_m and a little more. False when
+// the rear is not there.
+static bool trail_lanes(const cp_lane_map *map, const cp_vehicle_state *now, const cp_lane *lane,
+                        const foot *at, double length_m, trail *behind)
+{
+    cp_vec2 heading = cp_vec2_heading(now->yaw_rad), front_m = {now->front_x_m, now->front_y_m};
+    cp_vec2 rear_m = cp_vec2_sub(front_m, cp_vec2_scale(heading, now->length_m));
+    size_t next = at->piece + 1; // corner from which on nothing is behind the front
+    uint32_t number = now->lane;
+    for (size_t lanes = 0; lanes < TRAIL_LANES && lane != NULL; lanes++) {
+        for (size_t k = next; k-- > 0 && behind->corner[behind->count - 1].way_m > -length_m;) {
+            size_t piece = k + 1 < lane->point_count ? k : k - 1;
+            cp_vec2 along_m = cp_vec2_sub(flat(&lane->point[piece + 1]), flat(&lane->point[piece]));
+            double off_1 = at->left_m / fmax(length_of(along_m), 1e-6);
+            add_behind(behind,
+                       cp_vec2_add(flat(&lane->point[k]),
+                                   (cp_vec2){-along_m.y * off_1, along_m.x * off_1}),
+                       number);
+        }
+        if (behind->corner[behind->count - 1].way_m <= -length_m)
+            break;
+        lane = lane_behind(map, lane, rear_m, &number);
+        next = lane != NULL ? lane->point_count : 0;
+    }
+    // Where the rear would be on it.
+    size_t k = 0;
+    while (k + 2 < behind->count && behind->corner[k + 1].way_m > -now->length_m)
+        k++;
+    if (behind->count < 2)
+        return false;
+    const cp_way_point *from = &behind->corner[k], *to = from + 1;
+    double share_1 = (from->way_m + now->length_m) / (from->way_m - to->way_m);
+    cp_vec2 there_m =
+        cp_vec2_add(from->point_m, cp_vec2_scale(cp_vec2_sub(to->point_m, from->point_m), share_1));
+    cp_vec2 back = cp_vec2_sub(front_m, there_m);
+    return share_1 >= 0.0 && share_1 <= 1.0 &&
+           length_of(cp_vec2_sub(cp_vec2_scale(back, 1.0 / fmax(length_of(back), 1e-6)), heading)) <
+               REAR_OFF_1;
+}
+
+// The way of this step, and before it that of the body, straight on.
+static void trail_body(const cp_vehicle_motion *motion, trail *behind)
 {
     const cp_vehicle_state *now = &motion->after;
-    const cp_vehicle_state *then = motion->was_present ? &motion->before : now;
-    cp_vec2 front_m = {now->front_x_m, now->front_y_m};
+    bool is_known = motion->was_present && !cp_is_put_aside(motion);
+    const cp_vehicle_state *then = is_known ? &motion->before : now;
     cp_vec2 before_m = {then->front_x_m, then->front_y_m};
-    double step_m = length_of(cp_vec2_sub(front_m, before_m));
-    bool has_moved = step_m > 1e-6;
-    cp_vec2 rear_m =
-        cp_vec2_sub(before_m, cp_vec2_scale(cp_vec2_heading(then->yaw_rad), now->length_m + 1.0));
+    cp_vec2 back_m = cp_vec2_scale(cp_vec2_heading(then->yaw_rad), -(now->length_m + 1.0));
+    add_behind(behind, before_m, now->lane);
+    add_behind(behind, cp_vec2_add(before_m, back_m), now->lane);
+}
+
+static void begin_behind(const cp_lane_map *map, const cp_vehicle_motion *motion,
+                         const cp_lane *lane, const foot *at, bool is_lane_kept,
+                         cp_lane_ahead *ahead)
+{
+    const cp_vehicle_state *now = &motion->after;
+    cp_way_point front = {{now->front_x_m, now->front_y_m}, 0.0, now->lane, 0.0, now->elevation_m};
+    trail behind = {.corner = {front}, .count = 1};
+    cp_vec2 before_m = {motion->before.front_x_m, motion->before.front_y_m};
+    double step_m = motion->was_present ? length_of(cp_vec2_sub(front.point_m, before_m)) : 0.0;
+    if (!is_lane_kept || !trail_lanes(map, now, lane, at, now->length_m + 1.0 + step_m, &behind)) {
+        behind.count = 1;
+        trail_body(motion, &behind);
+    }
     ahead->count = 0;
-    ahead->corner[ahead->count++] = (cp_way_point){
-        rear_m, -(now->length_m + 1.0) - (has_moved ? step_m : 0.0), now->lane, 0.0, 0.0};
-    if (has_moved)
-        ahead->corner[ahead->count++] =
-            (cp_way_point){before_m, -step_m, now->lane, 0.0, now->elevation_m};
+    while (behind.count > 1)
+        ahead->corner[ahead->count++] = behind.corner[--behind.count];
     ahead->front = ahead->count;
+}
+
+// Whether it drives against its lane, as overtakers do. Where a lane begins with a hook the heading
+// says little: who was on the lane, or on one beside it, moves on it one way or the other; who has
+// come over a link drives along.
+static bool is_against(const cp_lane_map *map, const cp_vehicle_motion *motion, const cp_lane *lane,
+                       const foot *at)
+{
+    const cp_vehicle_state *now = &motion->after, *then = &motion->before;
+    bool by_heading = cp_vec2_dot(at->tangent, cp_vec2_heading(now->yaw_rad)) < 0.0;
+    const cp_lane *last = motion->was_present ? cp_lane_map_lane(map, then->lane) : NULL;
+    if (!by_heading || last == NULL)
+        return by_heading;
+    if (last->edge == lane->edge) {
+        foot was = find_foot(lane, (cp_vec2){then->front_x_m, then->front_y_m});
+        double step_1 = (double)at->piece - (double)was.piece;
+        if (at->piece == was.piece)
+            step_1 = at->share_1 - was.share_1;
+        return step_1 == 0.0 ? by_heading : step_1 < 0.0;
+    }
+    for (size_t k = 0; k < last->link_count; k++)
+        if (last->link[k].to == now->lane || last->link[k].via == now->lane)
+            return false;
+    return by_heading;
 }
 
 bool cp_lane_ahead_lay(const cp_lane_map *map, const cp_vehicle_motion *motion, double slope_1,
@@ -190,8 +325,8 @@ bool cp_lane_ahead_lay(const cp_lane_map *map, const cp_vehicle_motion *motion, 
     foot at = find_foot(lane, front_m);
     if (!(fabs(at.left_m) <= FAR_OFF_M))
         return false;
-    begin_behind(motion, ahead);
-    layer on = {map, ahead, cp_vec2_dot(at.tangent, cp_vec2_heading(now->yaw_rad)) < 0.0, is_route};
+    layer on = {map, ahead, is_against(map, motion, lane, &at), is_route};
+    begin_behind(map, motion, lane, &at, !on.is_reversed && slope_1 == 0.0, ahead);
     const cp_lane_point *from = &lane->point[at.piece], *to = from + 1;
     cp_vec2 foot_m =
         cp_vec2_add(flat(from), cp_vec2_scale(cp_vec2_sub(flat(to), flat(from)), at.share_1));
@@ -199,7 +334,8 @@ bool cp_lane_ahead_lay(const cp_lane_map *map, const cp_vehicle_motion *motion, 
         (cp_way_point){foot_m, 0.0, now->lane, from->at_m + at.share_1 * (to->at_m - from->at_m),
                        from->z_m + at.share_1 * (to->z_m - from->z_m)};
     ahead->is_inside = lane->is_inside;
-    ahead->ends_m = ahead->yields_m = INFINITY;
+    ahead->ends_m = INFINITY;
+    ahead->wait_count = 0;
     ahead->lane_step_1 = on.is_reversed ? -1.0 : 1.0;
 
     // Beyond the end of its lane there is nothing more of it to follow.

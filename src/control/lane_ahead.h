@@ -4,13 +4,15 @@
 
 #include "control/ttc.h"
 
-/* The way of a vehicle that keeps to its lane: behind it the way it has come in this step, from its
- * front on the centre line of its lane, corner by corner as the network has it, shifted by as much
- * as the front is off it now. At the lane's end it goes on along the lanes that follow, at the last
- * one straight on. A car that drifts (traffic/lateral_overlay.h) goes on drifting: to the side by
- * its slope for every metre along the lane. */
+/* The way of a vehicle that keeps to its lane: from its front on the centre line of its lane,
+ * corner by corner as the network has it, shifted by as much as the front is off it now. At the
+ * lane's end it goes on along the lanes that follow, at the last one straight on. Behind it are the
+ * lanes on which its rear is still, where that is known. A car that drifts
+ * (traffic/lateral_overlay.h) goes on drifting: to the side by its slope for every metre along the
+ * lane. */
 
-#define CP_LANE_AHEAD_POINTS 96
+#define CP_LANE_AHEAD_POINTS 128
+#define CP_LANE_AHEAD_WAITS 6
 
 /* A corner of the way. */
 typedef struct cp_way_point {
@@ -28,7 +30,9 @@ typedef struct cp_lane_ahead {
     double lane_step_1; /* of lane_at_m by a metre of way: 1, or -1 against the lane */
     bool is_inside;     /* the front is in a junction */
     double ends_m; /* its route ends there, and SUMO takes it off the road; INFINITY: it does not */
-    double yields_m; /* where it waits inside a junction if it must give way; INFINITY: nowhere */
+    double wait_m[CP_LANE_AHEAD_WAITS]; /* where it waits, by the signs, if others go first: before
+                                           junctions and inside them */
+    size_t wait_count;
 } cp_lane_ahead;
 
 /* Lay out the way of a vehicle for reach_m before its front. next_lanes: the lanes of edges on its
@@ -38,6 +42,10 @@ typedef struct cp_lane_ahead {
 bool cp_lane_ahead_lay(const cp_lane_map *map, const cp_vehicle_motion *motion, double slope_1,
                        const uint32_t *next_lanes, size_t next_count, bool is_route, double reach_m,
                        cp_lane_ahead *ahead);
+
+/* Whether SUMO has put it into the next lane in one step, as lane changes without a duration do: no
+ * body moves like that, and the way of this step is none. */
+bool cp_is_put_aside(const cp_vehicle_motion *motion);
 
 /* Where a vehicle of that length and width stands when its front has come way_m further (negative:
  * has still to go): front and rear are both on the way. */

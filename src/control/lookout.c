@@ -6,7 +6,8 @@
 
 #define TURNING_RAD_S 0.1
 #define OTHERWISE_LATER_S 0.5 /* driving otherwise, they may meet this much later */
-#define EASY_BRAKING_M_S2 4.5 /* as SUMO's drivers brake by default */
+#define STANDS_M_S 0.5
+#define BRAKES_FROM_M_S2 1.0 /* a driver who brakes more than this has seen what is ahead */
 #define BISECTIONS 40
 
 static bool is_turning(const cp_moving_rectangle *moving)
@@ -232,17 +233,20 @@ static cp_mover accelerating(cp_mover mover, double acceleration_m_s2, double ti
     return mover;
 }
 
-// As if it came to rest where it has to wait in the junction, when it can do so at ease.
-static cp_mover waiting(cp_mover mover, double time_s)
+// As if it came to rest at the first place where it has to wait for others, of those where it can
+// do so at ease: light_m is the way from the front at the end of the step to a red light.
+static cp_mover waiting(cp_mover mover, double light_m, double time_s)
 {
-    double speed_m_s = cp_vec2_length(mover.now.velocity_m_s);
-    if (mover.way == NULL || mover.way->yields_m == INFINITY)
+    double speed_m_s = cp_vec2_length(mover.now.velocity_m_s), nearest_m = INFINITY;
+    size_t count = mover.way != NULL ? mover.way->wait_count : 0;
+    for (size_t k = 0; k <= count; k++) {
+        double rest_m = (k < count ? mover.way->wait_m[k] : light_m) - mover.begin_m;
+        if (rest_m > 0.0 && speed_m_s * speed_m_s < 2.0 * rest_m * CP_LOOKOUT_EASY_BRAKING_M_S2)
+            nearest_m = fmin(nearest_m, rest_m);
+    }
+    if (nearest_m == INFINITY)
         return mover;
-    double rest_m = mover.way->yields_m - mover.begin_m;
-    double braking_m_s2 = speed_m_s * speed_m_s / (2.0 * rest_m);
-    return rest_m > 0.0 && braking_m_s2 < EASY_BRAKING_M_S2
-               ? accelerating(mover, -braking_m_s2, time_s)
-               : mover;
+    return accelerating(mover, -speed_m_s * speed_m_s / (2.0 * nearest_m), time_s);
 }
 
 /* Two vehicles at one moment. */
@@ -252,6 +256,8 @@ typedef struct encounter {
     const cp_lane_ahead *target_route; /* its way along its route; NULL: not known */
     double own_m_s2;                   /* accelerations along their headings */
     double target_m_s2;
+    double own_light_m; /* way to the red light it comes to next; INFINITY without */
+    double target_light_m;
     cp_target_class class;
     double ttc_s;
 } encounter;
@@ -277,7 +283,7 @@ static cp_target_class class_of(const encounter *pair, double time_s)
     return apart_rad > 0.75 * M_PI ? CP_TARGET_ONCOMING : CP_TARGET_CROSSING;
 }
 
-// Condition 3 without 4: whether the contact takes the function, or the driver sees to it.
+// Conditions 3 and 4: whether the contact takes the function, or the driver sees to it.
 static bool takes_braking(const encounter *pair, double required_m_s2)
 {
     double time_s = pair->ttc_s;
@@ -287,10 +293,16 @@ static bool takes_braking(const encounter *pair, double required_m_s2)
         double apart_rad =
             cp_mover_at(&pair->target, time_s).yaw_rad - cp_mover_at(&pair->own, time_s).yaw_rad;
         speed_m_s -= cp_vec2_length(pair->target.now.velocity_m_s) * cos(apart_rad);
-        braking_m_s2 += pair->target_m_s2;
+        // Who stands, or all but, gets no slower.
+        if (cp_vec2_length(pair->target.now.velocity_m_s) > STANDS_M_S)
+            braking_m_s2 += pair->target_m_s2;
     }
     double twice_s = 2.0 * time_s; // v^2/(2 d) with d = v TTC
-    return speed_m_s >= twice_s * required_m_s2 && speed_m_s > twice_s * braking_m_s2;
+    // Who brakes at ease what can be met at ease has seen it, whether or not he brakes enough yet.
+    bool sees_to_it =
+        braking_m_s2 > BRAKES_FROM_M_S2 && speed_m_s < twice_s * CP_LOOKOUT_EASY_BRAKING_M_S2;
+    return speed_m_s >= twice_s * required_m_s2 && speed_m_s > twice_s * braking_m_s2 &&
+           !sees_to_it;
 }
 
 // Conditions 5 and 6.
@@ -314,7 +326,8 @@ static bool meet_otherwise(const encounter *pair, double later_s)
         return false;
     if (pair->class == CP_TARGET_REAR_END)
         return true;
-    cp_mover own_waits = waiting(*own, later_s), target_waits = waiting(*target, later_s);
+    cp_mover own_waits = waiting(*own, pair->own_light_m, later_s);
+    cp_mover target_waits = waiting(*target, pair->target_light_m, later_s);
     if (cp_mover_ttc_s(&own_waits, target, later_s) == INFINITY ||
         cp_mover_ttc_s(own, &target_waits, later_s) == INFINITY)
         return false;
@@ -340,6 +353,7 @@ typedef struct sight {
     const cp_lane_ahead *own_way;
     const cp_lane_ahead *target_way;
     const cp_lane_ahead *target_route;
+    double light_m[2]; /* ways of own and target to red lights */
 } sight;
 
 static cp_status look_at_ways(const cp_lookout *lookout, sight *seen, cp_error *error)
@@ -357,7 +371,9 @@ static encounter encounter_inside(const sight *seen, double fraction)
                        .target = cp_mover_inside(seen->target, seen->target_way, fraction),
                        .target_route = seen->target_route,
                        .own_m_s2 = seen->own->after.acceleration_m_s2,
-                       .target_m_s2 = seen->target->after.acceleration_m_s2};
+                       .target_m_s2 = seen->target->after.acceleration_m_s2,
+                       .own_light_m = seen->light_m[0],
+                       .target_light_m = seen->light_m[1]};
 }
 
 static bool is_threat_inside(const cp_lookout_settings *settings, const sight *seen,
@@ -372,7 +388,8 @@ static bool is_threat_inside(const cp_lookout_settings *settings, const sight *s
 static double find_instant(const cp_lookout_settings *settings, const sight *seen)
 {
     double before_1 = 0.0, after_1 = 1.0;
-    if (!seen->own->was_present || !seen->target->was_present)
+    if (!seen->own->was_present || !seen->target->was_present || cp_is_put_aside(seen->own) ||
+        cp_is_put_aside(seen->target))
         return 1.0;
     if (is_threat_inside(settings, seen, 0.0))
         return 0.0;
@@ -386,24 +403,51 @@ static double find_instant(const cp_lookout_settings *settings, const sight *see
     return after_1;
 }
 
+// Ways to red lights, of two who head apart.
+static cp_status look_at_lights(const cp_lookout *lookout, sight *seen, cp_error *error)
+{
+    const cp_vehicle_motion *motions[2] = {seen->own, seen->target};
+    cp_status status = CP_OK;
+    for (int k = 0; k < 2 && status == CP_OK; k++) {
+        cp_next_light light;
+        status = cp_traffic_next_light(lookout->traffic, motions[k]->after.vehicle, &light, error);
+        if (status == CP_OK && light.is_red)
+            seen->light_m[k] = light.distance_m;
+    }
+    return status;
+}
+
+// Condition 8.
+static bool goes_nowhere(const cp_vehicle_motion *motion, const cp_lane_ahead *way)
+{
+    return way == NULL && cp_turns_too_fast(motion);
+}
+
 // All conditions at the end of the step.
 static cp_status judge(const cp_lookout *lookout, sight *seen, encounter *pair, bool *threatens,
                        cp_error *error)
 {
     const cp_lookout_settings *settings = &lookout->settings;
     *threatens = false;
-    if (cp_turns_too_fast(seen->own) || cp_turns_too_fast(seen->target) ||
-        !is_in_time(seen->own, seen->target, settings->ttc_s) ||
+    seen->light_m[0] = seen->light_m[1] = INFINITY;
+    if (!is_in_time(seen->own, seen->target, settings->ttc_s) ||
         (settings->view != NULL && are_parting(&seen->own->after, &seen->target->after)))
         return CP_OK;
     cp_status status = look_at_ways(lookout, seen, error);
+    if (goes_nowhere(seen->own, seen->own_way) || goes_nowhere(seen->target, seen->target_way))
+        return status;
     *pair = encounter_inside(seen, 1.0);
     if (status != CP_OK || !is_threat(settings, pair))
         return status;
-    // Few come so far: where its signal says it goes, and whether the roads meet.
+    // Few come so far: where its signal says it goes, who has a red light, and whether the roads
+    // meet.
     status =
         cp_road_view_way(settings->view, seen->target, CP_WAY_ROUTE, &seen->target_route, error);
+    if (status == CP_OK && pair->class != CP_TARGET_REAR_END)
+        status = look_at_lights(lookout, seen, error);
     pair->target_route = seen->target_route;
+    pair->own_light_m = seen->light_m[0];
+    pair->target_light_m = seen->light_m[1];
     if (status != CP_OK || !is_threat(settings, pair))
         return status;
     return cp_road_view_meet(settings->view, seen->own, &pair->own, seen->target, &pair->target,

@@ -25,21 +25,29 @@
  *   2. TTC < ttc_s, both at the speeds they have;
  *   3. the deceleration it takes is at least required_m_s2: v^2/(2 d) = v/(2 TTC) with v the own
  *      speed, less the target's along the own axis at the contact in same-direction traffic;
- *   4. the driver does not brake that hard already (an oncoming target comes all the same);
+ *   4. the driver does not see to it: he does not brake that hard already, nor brakes for something
+ *      that braking at ease will do for (an oncoming target comes all the same);
  *   5. it holds too when the target takes the turn that its route has next, which its signal shows;
  *      and, of one without a lane, where one of the two turns or TTC is above
  *      CP_LOOKOUT_TURN_HOLDS_S, if either of them drove straight on from now;
  *   6. of a target that does not head the same way: it holds too if the target goes on braking or
  *      gaining speed as it does. One that is about to stop beside the own way, or to be past it in
  *      time, is none;
- *   7. neither of the two, heading apart, can still come to rest at ease where it has to wait in
- * the junction for those who go first, and out of the other's way there;
- *   8. none of the two turns faster than 1 g of lateral acceleration allows, as cars of SUMO do in
- *      tight corners and where lanes change: there its heading does not say where it goes;
+ *   7. neither of the two, heading apart, can still come to rest at ease where it has to wait,
+ *      before the junction or in it, for those who go first or for a light that is red now, and is
+ *      out of the other's way there;
+ *   8. none of the two, without a lane, turns faster than 1 g of lateral acceleration allows, as
+ *      cars of SUMO do in tight corners and where lanes change: there its heading does not say
+ * where it goes;
  *   9. their roads meet where the contact would be (traffic.h): a bridge does not meet the road
  *      below. */
 
 #define CP_LOOKOUT_TURN_HOLDS_S 1.5 /* assumed */
+
+/* At ease: as SUMO's drivers brake when they see what is ahead (its default decel). Whatever can be
+ * met like that is met without a function: a driver of SUMO who errs not waits until it takes this
+ * and then brakes so. */
+#define CP_LOOKOUT_EASY_BRAKING_M_S2 4.5
 
 typedef enum cp_target_class {
     CP_TARGET_REAR_END, /* headings within 45 degrees */

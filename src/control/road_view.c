@@ -79,9 +79,11 @@ static cp_status ask_route(cp_road_view *view, const cp_vehicle_state *state, vi
         return CP_OK;
     ways->route_of = state->lane + 1; // 0: of none
     const cp_lane *lane = cp_lane_map_lane(view->map, state->lane);
-    ways->is_route = lane != NULL && !lane->is_inside;
-    return cp_traffic_next_lanes(view->traffic, state->vehicle, ways->next_lanes, EDGES_AHEAD,
-                                 &ways->next_count, error);
+    cp_status status = cp_traffic_next_lanes(view->traffic, state->vehicle, ways->next_lanes,
+                                             EDGES_AHEAD, &ways->next_count, error);
+    // Out of a junction a route always leads on.
+    ways->is_route = lane != NULL && (!lane->is_inside || ways->next_count > 0);
+    return status;
 }
 
 static cp_status lay(cp_road_view *view, const cp_vehicle_motion *motion, cp_way_choice choice,
@@ -186,7 +188,8 @@ static double fastest_m_s(const cp_mover *mover)
 // Who drives behind another in the same lanes is most of what there is to look at.
 static double earliest_behind_s(const cp_mover *one, const cp_mover *other)
 {
-    if (one->way == NULL || other->way == NULL || one->way->is_inside || other->way->is_inside)
+    if (one->way == NULL || other->way == NULL || one->way->is_inside || other->way->is_inside ||
+        other->way->lane_step_1 < 0.0)
         return 0.0;
     const cp_way_point *front = &other->way->corner[other->way->front];
     double ahead_m = cp_lane_ahead_way_to_m(one->way, front->lane, front->lane_at_m);

@@ -2,6 +2,7 @@
 #include "report/report.h"
 
 #include "core/file.h"
+#include "report/false_activations.h"
 #include "report/page.h"
 #include "report/page_data.h"
 
@@ -11,20 +12,22 @@
 extern const unsigned char cp_page_html[];
 extern const unsigned char cp_page_css[];
 extern const unsigned char cp_page_js[];
+extern const unsigned char cp_page_functions_js[];
 extern const unsigned char cp_page_d3_notice[];
 extern const unsigned char cp_page_d3[];
 extern const unsigned char cp_scorecard_csv[]; /* db/validation/scorecard.csv */
 
-static cp_status write_page(const cp_study_data *data, const json_t *page_data, const char *answer,
-                            const char *path, cp_error *error)
+static cp_status write_page(const cp_study_data *data, const json_t *page_data,
+                            const json_t *activations, const char *answer, const char *path,
+                            cp_error *error)
 {
     char *title = cp_page_escape(data->name), *safe_answer = cp_page_escape(answer);
     char *notice = cp_page_escape((const char *)cp_page_d3_notice),
-         *json = cp_page_data_text(page_data);
+         *json = cp_page_data_text(page_data), *acts = cp_page_data_text(activations);
     char *page = NULL;
     size_t size = 0;
     cp_status status;
-    if (!title || !safe_answer || !notice || !json) {
+    if (!title || !safe_answer || !notice || !json || !acts) {
         status = cp_fail_memory(error, "a report");
         goto done;
     }
@@ -37,6 +40,8 @@ static cp_status write_page(const cp_study_data *data, const json_t *page_data, 
         {"d3_notice", notice},
         {"script", (const char *)cp_page_js},
         {"data", json},
+        {"activations", acts},
+        {"functions_script", (const char *)cp_page_functions_js},
         {"scorecard", (const char *)cp_scorecard_csv},
     };
     status = cp_page_fill((const char *)cp_page_html, parts, sizeof parts / sizeof *parts, &page,
@@ -46,6 +51,7 @@ static cp_status write_page(const cp_study_data *data, const json_t *page_data, 
 
 done:
     free(page);
+    free(acts);
     free(json);
     free(notice);
     free(safe_answer);
@@ -56,7 +62,7 @@ done:
 cp_status cp_report_write(cp_store *store, const char *baseline, const char *path, cp_error *error)
 {
     cp_study_data data;
-    json_t *page_data = NULL;
+    json_t *page_data = NULL, *activations = NULL;
     char *answer = NULL;
     size_t variant = 0;
     cp_comparison_options options = cp_comparison_options_default();
@@ -74,8 +80,11 @@ cp_status cp_report_write(cp_store *store, const char *baseline, const char *pat
     if (status == CP_OK)
         status = cp_page_data(store, &data, variant, &options, &page_data, &answer, error);
     if (status == CP_OK)
-        status = write_page(&data, page_data, answer, path, error);
+        status = cp_false_activations_json(store, &activations, error);
+    if (status == CP_OK)
+        status = write_page(&data, page_data, activations, answer, path, error);
     json_decref(page_data);
+    json_decref(activations);
     free(answer);
     cp_model_ensemble_destroy(&ensemble);
     cp_study_data_destroy(&data);

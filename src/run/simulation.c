@@ -260,8 +260,10 @@ static cp_status take_sumo_collisions(cp_simulation *simulation, cp_error *error
 
 cp_status cp_simulation_step(cp_simulation *simulation, cp_error *error)
 {
-    if (simulation->steps++ == simulation->warmup_steps)
+    if (simulation->steps++ == simulation->warmup_steps) {
         simulation->warmup_exposure = cp_traffic_exposure(simulation->traffic);
+        cp_controls_count_from_now(simulation->controls);
+    }
     cp_status status = cp_traffic_step(simulation->traffic, error);
     if (status == CP_OK)
         status = cp_controls_step(simulation->controls, error);

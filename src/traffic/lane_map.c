@@ -12,6 +12,7 @@ struct cp_lane_map {
     size_t count;
     cp_lane_point *points; /* of all lanes */
     cp_lane_link *links;
+    uint32_t *froms;
 };
 
 static double heading_rad(const cp_lane_point *from, const cp_lane_point *to)
@@ -44,6 +45,36 @@ static void find_straight(cp_lane_map *map)
     }
 }
 
+// The lane right behind the end of another by one of its links.
+static uint32_t behind(const cp_lane_link *link)
+{
+    return link->via != CP_LANE_NONE ? link->via : link->to;
+}
+
+// Links the other way round; room for as many as there are links. Links to lanes there are not are
+// left out.
+static void find_from(cp_lane_map *map)
+{
+    uint32_t *next = map->froms;
+    for (size_t k = 0; k < map->count; k++)
+        for (size_t i = 0; i < map->lane[k].link_count; i++)
+            if (behind(&map->lane[k].link[i]) < map->count)
+                map->lane[behind(&map->lane[k].link[i])].from_count++;
+    for (size_t k = 0; k < map->count; k++) {
+        map->lane[k].from = next;
+        next += map->lane[k].from_count;
+        map->lane[k].from_count = 0;
+    }
+    for (size_t k = 0; k < map->count; k++)
+        for (size_t i = 0; i < map->lane[k].link_count; i++) {
+            uint32_t to = behind(&map->lane[k].link[i]);
+            if (to >= map->count)
+                continue;
+            cp_lane *lane = &map->lane[to];
+            map->froms[(size_t)(lane->from - map->froms) + lane->from_count++] = (uint32_t)k;
+        }
+}
+
 cp_status cp_lane_map_create(const cp_lane *lanes, size_t count, cp_lane_map **map, cp_error *error)
 {
     size_t points = 0, links = 0;
@@ -58,8 +89,10 @@ cp_status cp_lane_map_create(const cp_lane *lanes, size_t count, cp_lane_map **m
     created->lane = calloc(count + 1, sizeof *created->lane);
     created->points = calloc(points + 1, sizeof *created->points);
     created->links = calloc(links + 1, sizeof *created->links);
+    created->froms = calloc(links + 1, sizeof *created->froms);
     created->count = count;
-    if (created->lane == NULL || created->points == NULL || created->links == NULL) {
+    if (created->lane == NULL || created->points == NULL || created->links == NULL ||
+        created->froms == NULL) {
         cp_lane_map_destroy(created);
         return cp_fail_memory(error, "lanes");
     }
@@ -70,12 +103,14 @@ cp_status cp_lane_map_create(const cp_lane *lanes, size_t count, cp_lane_map **m
         *lane = lanes[k];
         lane->point = point;
         lane->link = link;
+        lane->from_count = 0;
         for (size_t i = 0; i < lane->point_count; i++)
             *point++ = lanes[k].point[i];
         for (size_t i = 0; i < lane->link_count; i++)
             *link++ = lanes[k].link[i];
     }
     find_straight(created);
+    find_from(created);
     *map = created;
     return CP_OK;
 }
@@ -87,6 +122,7 @@ void cp_lane_map_destroy(cp_lane_map *map)
     free(map->lane);
     free(map->points);
     free(map->links);
+    free(map->froms);
     free(map);
 }
 
@@ -95,12 +131,12 @@ const cp_lane *cp_lane_map_lane(const cp_lane_map *map, uint32_t lane)
     return lane < map->count && map->lane[lane].point_count >= 2 ? &map->lane[lane] : NULL;
 }
 
-uint32_t cp_lane_map_next(const cp_lane_map *map, uint32_t number, uint32_t towards)
+const cp_lane_link *cp_lane_map_link(const cp_lane_map *map, uint32_t number, uint32_t towards)
 {
     const cp_lane *lane = cp_lane_map_lane(map, number);
     const cp_lane *aim = cp_lane_map_lane(map, towards);
     if (lane == NULL || lane->link_count == 0)
-        return CP_LANE_NONE;
+        return NULL;
     const cp_lane_link *taken = &lane->link[lane->straight];
     bool is_on_edge = false;
     for (size_t k = 0; aim != NULL && !lane->is_inside && k < lane->link_count; k++) {
@@ -110,5 +146,11 @@ uint32_t cp_lane_map_next(const cp_lane_map *map, uint32_t number, uint32_t towa
         taken = &lane->link[k];
         is_on_edge = true;
     }
-    return taken->via != CP_LANE_NONE ? taken->via : taken->to;
+    return taken;
+}
+
+uint32_t cp_lane_map_next(const cp_lane_map *map, uint32_t number, uint32_t towards)
+{
+    const cp_lane_link *taken = cp_lane_map_link(map, number, towards);
+    return taken != NULL ? behind(taken) : CP_LANE_NONE;
 }

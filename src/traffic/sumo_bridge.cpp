@@ -680,6 +680,23 @@ cp_status sumo_bridge_lane_map(const cp_lane_map **map, cp_error *error)
     return status != CP_OK ? status : answer;
 }
 
+// The first lane of an edge that a vehicle class may use; its first of all when none allows it.
+static std::string first_lane_for(const std::string &edge, const std::string &vehicle_class)
+{
+    const int count = libsumo::Edge::getLaneNumber(edge);
+    for (int k = 0; k < count; k++) {
+        const std::string lane = edge + "_" + std::to_string(k);
+        const auto allowed = libsumo::Lane::getAllowed(lane);
+        const auto refused = libsumo::Lane::getDisallowed(lane);
+        const auto is_in = [&](const std::vector<std::string> &list) {
+            return std::find(list.begin(), list.end(), vehicle_class) != list.end();
+        };
+        if (allowed.empty() ? !is_in(refused) : is_in(allowed))
+            return lane;
+    }
+    return edge + "_0";
+}
+
 cp_status sumo_bridge_next_lanes(uint32_t vehicle, uint32_t *lanes, size_t room, size_t *count,
                                  cp_error *error)
 {
@@ -693,6 +710,14 @@ cp_status sumo_bridge_next_lanes(uint32_t vehicle, uint32_t *lanes, size_t room,
                 if (lane != here && *count < room)
                     lanes[(*count)++] = bridge->lanes.number(lane);
         }
+        // Inside a junction only the edges are known.
+        if (here.empty() || here[0] != ':')
+            return;
+        const auto route = libsumo::Vehicle::getRoute(id);
+        const std::string who = libsumo::Vehicle::getVehicleClass(id);
+        const int last = libsumo::Vehicle::getRouteIndex(id);
+        for (size_t k = (size_t)(last + 1); last >= 0 && k < route.size() && *count < room; k++)
+            lanes[(*count)++] = bridge->lanes.number(first_lane_for(route[k], who));
     });
 }
 

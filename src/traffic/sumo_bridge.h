@@ -127,7 +127,8 @@ CP_MUST_CHECK cp_status sumo_bridge_road_relation(const cp_vehicle_state *one,
 /* Where the lanes run, by the numbers of lanes; owned by the bridge. Read like the above. */
 CP_MUST_CHECK cp_status sumo_bridge_lane_map(const cp_lane_map **map, cp_error *error);
 /* The lanes of edges that a vehicle will take next on its route, staying in its lane as long as it
- * can; the first room of them. None while SUMO does not know (it is in a junction). */
+ * can; the first room of them. While it is in a junction SUMO knows the edges only: the first lane
+ * of each that it may use. */
 CP_MUST_CHECK cp_status sumo_bridge_next_lanes(uint32_t vehicle, uint32_t *lanes, size_t room,
                                                size_t *count, cp_error *error);
 

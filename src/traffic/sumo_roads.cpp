@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,13 @@ std::vector<cp_lane_point> corners_of(const Points &shape, double length_m)
     return corners;
 }
 
+// By the signs: SUMO's letters for a minor road, equal roads, a stop sign and an all-way stop.
+// Lights have other letters, and change.
+bool gives_way(const libsumo::TraCIConnection &link)
+{
+    return !link.state.empty() && std::strchr("m=sw", link.state[0]) != nullptr;
+}
+
 void read_links(const cp_sumo_numbers *numbers, const std::string &id, uint32_t number, Lanes *all)
 {
     for (const libsumo::TraCIConnection &link : libsumo::Lane::getLinks(id)) {
@@ -97,7 +105,7 @@ void read_links(const cp_sumo_numbers *numbers, const std::string &id, uint32_t 
         const uint32_t via = link.approachedInternal.empty()
                                  ? CP_LANE_NONE
                                  : numbers->lane(link.approachedInternal.c_str());
-        all->links[number].push_back({to, via});
+        all->links[number].push_back({to, via, gives_way(link)});
         if (all->junctions[number].empty())
             all->connections.push_back({number, to, via});
     }
@@ -125,6 +133,8 @@ void read_lane(const cp_sumo_numbers *numbers, const std::string &id, Lanes *all
                          all->points[number].size(),
                          all->links[number].data(),
                          all->links[number].size(),
+                         nullptr,
+                         0,
                          Lane::getWidth(id),
                          numbers->edge(all->edges[number].c_str()),
                          0,

@@ -124,8 +124,9 @@ static void oncoming_cars_in_their_lane_are_left_alone(void **unused)
 // Commands given to a car of this speed driving at a standing one.
 static int commands_at_speed(double speed_m_s)
 {
-    const char *const names[] = {"speed_min_m_s", "speed_max_m_s", NULL};
-    const double values[] = {3.0, 30.0};
+    const char *const names[] = {"speed_min_m_s", "speed_max_m_s", "required_deceleration_m_s2",
+                                 NULL};
+    const double values[] = {3.0, 30.0, 3.0};
     cp_traffic *traffic = road_open(0.05);
     cp_controls *controls = create(traffic, names, values);
     road_add("own", 0.0, 0.0, 0.0, speed_m_s);

@@ -3,6 +3,7 @@
 
 #include "control/scripted_road.h"
 
+#include <jansson.h>
 #include <setjmp.h>
 #include <stdarg.h>
 
@@ -85,12 +86,62 @@ static void some_heed_no_warning(void **unused)
     assert_true(isnan(brakes_at_s("own", 0.0, 1.0, 0.0)));
 }
 
+/* Counters after an unheeded warning of a standing car that goes away at gone_s. */
+static json_t *counters_when_gone_at(double gone_s)
+{
+    const double values[] = {2.4, 0.0, 0.0, 0.0, 0.0, 1.0};
+    cp_control_settings settings = road_settings(CP_CONTROL_FUNCTION, "fcw", NAMES, values);
+    cp_traffic *traffic = road_open(0.1);
+    cp_controls *controls;
+    cp_error error = {0};
+    char *json = NULL;
+    assert_int_equal(cp_controls_create(&settings, 1, 5, 1, traffic, &controls, &error), CP_OK);
+    road_add("own", 0.0, 0.0, 0.0, 20.0);
+    road_add("standing", 50.0 + 4.5, 0.0, 0.0, 0.0);
+    while (road.time_s < 2.8) {
+        assert_int_equal(cp_traffic_step(traffic, &error), CP_OK);
+        assert_int_equal(cp_controls_step(controls, &error), CP_OK);
+        road.cars[1].is_there = road.time_s < gone_s;
+    }
+    assert_int_equal(cp_controls_counters_json(controls, &json, &error), CP_OK);
+    json_t *counters = json_loads(json, 0, NULL);
+    free(json);
+    cp_controls_destroy(controls);
+    cp_traffic_destroy(traffic);
+    return counters;
+}
+
+static double counted(const json_t *counters, const char *name)
+{
+    const json_t *value = json_object_get(counters, name);
+    assert_non_null(value);
+    return json_number_value(value);
+}
+
+static void a_warning_is_borne_out_by_a_touch(void **unused)
+{
+    (void)unused;
+    // They touch 2.6 s on; nobody errs.
+    json_t *counters = counters_when_gone_at(100.0);
+    assert_true(counted(counters, "fcw.warnings") >= 1.0);
+    assert_true(counted(counters, "fcw.warnings_borne_out") == 1.0);
+    assert_true(counted(counters, "fcw.warnings_without_error") ==
+                counted(counters, "fcw.warnings"));
+    json_decref(counters);
+    // It goes away in time.
+    counters = counters_when_gone_at(2.0);
+    assert_true(counted(counters, "fcw.warnings") == 1.0);
+    assert_true(counted(counters, "fcw.warnings_borne_out") == 0.0);
+    json_decref(counters);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_driver_brakes_after_his_reaction_time),
         cmocka_unit_test(reaction_times_are_log_normal_and_seeded),
         cmocka_unit_test(some_heed_no_warning),
+        cmocka_unit_test(a_warning_is_borne_out_by_a_touch),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

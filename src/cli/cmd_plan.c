@@ -4,6 +4,7 @@
 #include "run/fleet.h"
 #include "study/controls_text.h"
 #include "study/plan.h"
+#include "study/type_mapping.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -82,6 +83,8 @@ static cp_status make_plan(const char *path, planned *p, cp_error *error)
     cp_status status = cp_study_load(path, &p->study, error);
     if (status == CP_OK)
         status = cp_fleet_load(&p->study, &p->fleet, error);
+    if (status == CP_OK)
+        status = cp_study_check_types(&p->study, error);
     if (status == CP_OK)
         status = cp_plan_create(&p->study, p->fleet.rows, p->fleet.count, &p->rows, error);
     return status;

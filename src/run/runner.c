@@ -11,6 +11,7 @@
 #include "store/claim.h"
 #include "store/query.h"
 #include "study/controls_text.h"
+#include "study/type_mapping.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -47,6 +48,7 @@ typedef struct runner {
     int64_t *waiting; /* replications still to start: waiting[next ...] */
     size_t waiting_count;
     size_t next;
+    cp_said said;             /* by workers, passed on once */
     bool *background_missing; /* of each of plan.background: to run, by us, and not yet started */
     runner_job *jobs;
     size_t running;
@@ -130,6 +132,7 @@ static cp_status probe_scenario(runner *run, const cp_study_scenario *scenario, 
     cp_status status = cp_child_start(run->worker_path, arguments, &child, error);
     if (status != CP_OK)
         return status;
+    child.said = &run->said;
     cp_child_wait(&child, run->time_limit_s, &end);
     if (end.exit_code == 0)
         return CP_OK;
@@ -272,6 +275,7 @@ static cp_status start_background(runner *run, runner_job *job, cp_error *error)
                                run->parent,
                                NULL};
     cp_status status = cp_child_start(run->worker_path, arguments, &job->child, error);
+    job->child.said = &run->said;
     if (status != CP_OK)
         return status;
     job->background = row;
@@ -297,6 +301,7 @@ static cp_status start_job(runner *run, runner_job *job, cp_error *error)
                                run->parent,
                                NULL};
     cp_status status = cp_child_start(run->worker_path, arguments, &job->child, error);
+    job->child.said = &run->said;
     if (status != CP_OK)
         return status;
     run->next++;
@@ -538,6 +543,8 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
     if (status == CP_OK)
         status = probe_scenarios(&run, error);
     if (status == CP_OK)
+        status = cp_study_check_types(&run.study, error);
+    if (status == CP_OK)
         status = prepare_store(&run, error);
     if (status == CP_OK)
         status = run_jobs(&run, error);
@@ -545,6 +552,7 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
         status = conclude(&run, error);
     summary->wall_time_s = cp_clock_s() - started_s;
     end_signals(&run);
+    cp_said_destroy(&run.said);
     free(run.jobs);
     free(run.waiting);
     free(run.background_missing);

@@ -229,8 +229,9 @@ static void print_summary(const planned *p)
         printf("; %zu in the database are planned no more", p->dropped);
     printf("\n");
     if (p->rows.background_count > 0)
-        printf("and %zu of %g s without driver errors or functions, one a network\n",
-               p->rows.background_count, p->rows.background[0].duration_s);
+        printf("and %zu of %g s without driver errors or functions, %zu a network\n",
+               p->rows.background_count, p->rows.background[0].duration_s,
+               p->study.background_seeds);
     if (p->study.design == CP_DESIGN_COUNTERFACTUAL)
         printf("every crash of the baseline is run again with each of %zu treatments\n",
                p->study.variant_count - 1);

@@ -158,7 +158,10 @@ static cp_status find_backgrounds(runner *run, cp_error *error)
         calloc(run->plan.background_count + 1, sizeof *run->background_missing);
     if (run->background_missing == NULL)
         return cp_fail_memory(error, "backgrounds");
-    return cp_background_rows_missing(run->store, &run->plan, run->background_missing, error);
+    cp_status status = cp_background_rows_drop_stale(run->store, &run->plan, error);
+    return status == CP_OK
+               ? cp_background_rows_missing(run->store, &run->plan, run->background_missing, error)
+               : status;
 }
 
 // Database, claims of the dead, plan, queue: in this order, so that what a dead worker held is
@@ -261,12 +264,16 @@ static const cp_background_plan_row *next_background(const runner *run)
 static cp_status start_background(runner *run, runner_job *job, cp_error *error)
 {
     const cp_background_plan_row *row = next_background(run);
+    char seed[32];
+    snprintf(seed, sizeof seed, "%" PRIu64, row->seed);
     const char *arguments[] = {"crashpulse-worker",
                                "--background",
                                "--study",
                                run->options->study_path,
                                "--scenario",
                                run->plan.scenario[row->scenario].name,
+                               "--seed",
+                               seed,
                                "--db",
                                run->options->db_path,
                                "--expect",

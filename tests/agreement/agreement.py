@@ -93,10 +93,10 @@ def creeping(database):
     return [f"    {a} {b}: crash at {time_s:.2f} s with a delta-v of {delta_v_m_s * 3.6:.2f} km/h"
             for time_s, a, b, delta_v_m_s in sqlite3.connect(database).execute(
                 "SELECT c.time_s, a.sumo_id, b.sumo_id, max(coalesce(a.delta_v_m_s, 0), coalesce(b.delta_v_m_s, "
-                "0)) AS delta_v_m_s FROM crash AS c JOIN crash_vehicle AS a ON a.crash_id = c.id AND a.role = "
+                "0)) AS most_m_s FROM crash AS c JOIN crash_vehicle AS a ON a.crash_id = c.id AND a.role = "
                 "'a' JOIN crash_vehicle AS b ON b.crash_id = c.id AND b.role = 'b' WHERE c.validity NOT LIKE "
                 "'%no_model%' AND a.validity NOT LIKE '%no_model%' AND b.validity NOT LIKE '%no_model%' GROUP "
-                "BY c.id HAVING delta_v_m_s < 1 / 3.6")]
+                "BY c.id HAVING most_m_s < 1 / 3.6")]
 
 
 def run(folder, name, step):

@@ -42,6 +42,22 @@ JOIN scenario AS s ON s.id = r.scenario_id
 JOIN json_each(r.crash_options, '$.vehicle_types') AS t
 GROUP BY s.number, t.key, vehicle_model, chosen_by, reason;
 
+-- Whether a crash lies within 20 m of where the network without driver errors had one itself (a flagged
+-- site): then it may be the network's doing. 0 too where no background was simulated.
+DROP VIEW IF EXISTS crash_site;
+CREATE VIEW crash_site AS
+SELECT c.id AS crash_id, r.id AS replication_id, r.scenario_id AS scenario_id,
+       r.variant_id AS variant_id,
+       EXISTS (SELECT 1 FROM scenario AS s
+               JOIN scenario AS x ON (x.sumocfg, x.sumo_options, x.files)
+                                     = (s.sumocfg, s.sumo_options, s.files)
+               JOIN background_contact AS b ON b.scenario_id = x.id
+               WHERE s.id = r.scenario_id AND b.reason = 'crash'
+                 AND (b.x_m - c.x_m) * (b.x_m - c.x_m) + (b.y_m - c.y_m) * (b.y_m - c.y_m)
+                     <= 20.0 * 20.0) AS at_flagged_site
+FROM crash AS c
+JOIN replication AS r ON r.id = c.replication_id;
+
 -- Every vehicle of every crash, struck on whichever side: what --where and --by of 'crashpulse
 -- compare' choose from.
 DROP VIEW IF EXISTS crash_vehicle_list;
@@ -49,7 +65,8 @@ CREATE VIEW crash_vehicle_list AS
 SELECT s.name AS scenario, v.name AS variant, r.sweep AS sweep, r.number AS replication,
        r.seed AS seed, r.id AS replication_id, c.time_s AS time_s, c.x_m AS x_m, c.y_m AS y_m,
        c.closing_speed_m_s AS closing_speed_m_s, c.lateral_offset_m AS lateral_offset_m,
-       c.angle_rad AS angle_rad, c.overlap_1 AS overlap_1, c.validity AS crash_validity, cv.*
+       c.angle_rad AS angle_rad, c.overlap_1 AS overlap_1, c.validity AS crash_validity,
+       (SELECT f.at_flagged_site FROM crash_site AS f WHERE f.crash_id = c.id) AS at_flagged_site, cv.*
 FROM crash_vehicle AS cv
 JOIN crash AS c ON c.id = cv.crash_id
 JOIN replication AS r ON r.id = c.replication_id
@@ -213,6 +230,63 @@ JOIN scenario AS s ON s.id = r.scenario_id
 JOIN variant AS v ON v.id = r.variant_id
 WHERE r.status = 'done'
 ORDER BY s.number, v.number, r.number;
+
+-- What flagged sites (crash_site) take from and add to the rates of a scenario: crashes at them, and the
+-- rate with and without. A contrast without them, with its interval: 'crashpulse compare DB --where
+-- "at_flagged_site = 0"'.
+DROP VIEW IF EXISTS flagged_sites;
+CREATE VIEW flagged_sites AS
+SELECT s.name AS scenario, v.name AS variant, s.id AS scenario_id, v.id AS variant_id,
+       v.is_baseline AS is_baseline, sum(x.crashes) AS crashes, sum(x.flagged) AS crashes_at_flagged,
+       sum(x.vehicle_km) AS vehicle_km,
+       1e6 * sum(x.crashes) / nullif(sum(x.vehicle_km), 0.0) AS crashes_per_million_km,
+       1e6 * sum(x.crashes - x.flagged) / nullif(sum(x.vehicle_km), 0.0)
+           AS crashes_per_million_km_without
+FROM (SELECT r.scenario_id, r.variant_id, r.vehicle_km AS vehicle_km,
+             (SELECT count(*) FROM crash_site AS c WHERE c.replication_id = r.id) AS crashes,
+             (SELECT count(*) FROM crash_site AS c
+              WHERE c.replication_id = r.id AND c.at_flagged_site) AS flagged
+      FROM replication AS r WHERE r.status = 'done') AS x
+JOIN scenario AS s ON s.id = x.scenario_id
+JOIN variant AS v ON v.id = x.variant_id
+GROUP BY s.id, v.id
+ORDER BY s.number, v.number;
+
+-- How often the driver errors of a scenario acted in its finished replications of the baseline. acted = 0:
+-- it cannot on this network, or hardly ever does (red_light without traffic lights, misjudged_gap and
+-- failed_to_see without crossings to yield at); NULL: not counted.
+DROP VIEW IF EXISTS driver_error_activity;
+CREATE VIEW driver_error_activity AS
+SELECT s.name AS scenario, s.id AS scenario_id, m.value AS driver_error,
+       sum((SELECT k.value FROM json_each(r.counters) AS k
+            WHERE k.key = a.model || '.' || a.counter)) AS acted,
+       sum(r.vehicle_h) AS vehicle_h
+FROM scenario AS s
+JOIN json_each(s.driver_errors) AS e
+JOIN json_each(e.value) AS m ON m.key = 'model'
+JOIN (SELECT 'failed_to_see' AS model, 'overlooked_pairs' AS counter
+      UNION ALL SELECT 'lane_drift', 'drifts' UNION ALL SELECT 'late_braking', 'braked_late'
+      UNION ALL SELECT 'misjudged_gap', 'misjudged' UNION ALL SELECT 'red_light', 'red_lights_run'
+      UNION ALL SELECT 'risky_overtaking', 'risky_drivers') AS a ON a.model = m.value
+JOIN replication AS r ON r.scenario_id = s.id AND r.status = 'done'
+JOIN variant AS v ON v.id = r.variant_id AND v.is_baseline
+GROUP BY s.id, e.key
+ORDER BY s.number, e.key;
+
+-- Replications that did not finish, by scenario and variant. Those that SUMO ended itself are not missing
+-- at random: what drivers and functions do leads there.
+DROP VIEW IF EXISTS failed_replications;
+CREATE VIEW failed_replications AS
+SELECT s.name AS scenario, v.name AS variant, v.is_baseline AS is_baseline,
+       count(*) AS replications, sum(r.status = 'failed') AS failed,
+       (SELECT a.message FROM attempt AS a JOIN replication AS x ON x.id = a.replication_id
+        WHERE x.scenario_id = s.id AND x.variant_id = v.id AND x.status = 'failed'
+          AND a.message IS NOT NULL ORDER BY a.replication_id, a.number DESC LIMIT 1) AS message
+FROM replication AS r
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = r.variant_id
+GROUP BY s.id, v.id
+ORDER BY s.number, v.number;
 
 -- Exposure and crash rate of each variant over all its finished replications.
 DROP VIEW IF EXISTS crash_rate_by_variant;

@@ -878,6 +878,7 @@
       ...data.backgrounds.map(b => [`Without driver errors, ${b.scenario}`, b.is_known ? b.text + ": the network’s own doing" : "not simulated"]),
       ["Observation", "the frontally struck vehicle; a crash with both fronts struck gives two, kept together with all crashes of their replication in every interval and test"]
     ]);
+    data.caveats.forEach(text => element(parent, "p", `Mind: ${text}.`, { class: "warning" }));
     data.backgrounds.filter(b => b.warning).forEach(b => element(parent, "p", `Mind: ${b.warning}.`, { class: "warning" }));
     document.getElementById("note-contrasts").textContent = study.design === "counterfactual" ?
       "p by sign flips of whole replications; intervals by bootstrap over replications (BCa), given from 20 replications on, and of shares by counts widened by what replications scatter. Hodges–Lehmann: the median of all means of two changes. Holm’s adjustment covers every p of the table." :

@@ -4,6 +4,7 @@
 #include "calibrate/csv_row.h"
 #include "core/file.h"
 #include "core/hash.h"
+#include "core/log.h"
 #include "core/units.h"
 #include "core/yaml_file.h"
 #include "exchange/nhtsa_ev5.h"
@@ -323,6 +324,13 @@ static cp_status load_file(const cp_pulse_source *source, cp_reference_pulse *pu
 static void find_marks(cp_reference_pulse *pulse)
 {
     cp_olc olc = cp_olc_from_velocity(pulse->vx_m_s, pulse->count, pulse->interval_s);
+    double end_s = (double)(pulse->count - 1) * pulse->interval_s;
+    if (olc.status == CP_OLC_VALUE && olc.t2_s > end_s) {
+        cp_log_warning("%s: ends at %.1f ms, before its OLC is decided (%.1f ms at its last speed): "
+                       "none is taken from it",
+                       pulse->source, 1e3 * end_s, 1e3 * olc.t2_s);
+        olc.olc_g = NAN;
+    }
     pulse->marks = (cp_pulse_marks){.olc_g = olc.olc_g, .t_v0_s = NAN};
     double way_m = 0.0;
     for (size_t k = 0; k < pulse->count; k++) {

@@ -4,6 +4,7 @@
 #include "calibrate/csv_table.h"
 #include "calibrate/parallel.h"
 #include "calibrate/suite_case.h"
+#include "crash/validity.h"
 
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics_double.h>
@@ -296,7 +297,7 @@ static void run_task(void *context, size_t k)
         cp_crash_result result, wall;
         status = cp_suite_case_simulate(row, offset, &result, &wall, &error);
         if (status == CP_OK && !result.touched)
-            status = cp_fail(&error, CP_RUN_FAILED, "the two never met");
+            status = cp_fail(&error, CP_RUN_FAILED, CP_NO_CONTACT_TEXT);
         if (status == CP_OK)
             look_at(make, work, offset, &result, &wall, values);
         cp_crash_result_destroy(&result);

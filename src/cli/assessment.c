@@ -3,6 +3,7 @@
 
 #include "core/log.h"
 #include "impact/confirmation.h"
+#include "impact/footprint.h"
 #include "impact/recorded_contact.h"
 #include "run/crash_record.h"
 
@@ -22,6 +23,7 @@ typedef struct collision_view {
     const char *list_path;
     const cp_fleet *fleet;
     double step_length_s;
+    const char *type_id[2]; /* the list's, else the record's */
     cp_sumo_type type[2];
     cp_vehicle_state *state[2];
     double *time_s[2];
@@ -43,7 +45,7 @@ static cp_sumo_type standard_car(void)
 static cp_status describe_type(const collision_view *view, const cp_vtypes *types, int role,
                                cp_sumo_type *type, cp_error *error)
 {
-    const char *id = view->listed->type[role];
+    const char *id = view->type_id[role];
     const cp_vtype *known = cp_vtypes_find(types, id);
     cp_fleet_choice choice;
     *type = standard_car();
@@ -66,6 +68,10 @@ static cp_status describe_type(const collision_view *view, const cp_vtypes *type
 static cp_status make_track(collision_view *view, const cp_fcd_track *track, const cp_vtypes *types,
                             int role, cp_error *error)
 {
+    const char *listed_type = view->listed->type[role];
+    view->type_id[role] = listed_type != NULL   ? listed_type
+                          : track->type != NULL ? track->type
+                                                : "";
     cp_status status = describe_type(view, types, role, &view->type[role], error);
     if (status != CP_OK)
         return status;
@@ -91,13 +97,90 @@ static cp_status make_track(collision_view *view, const cp_fcd_track *track, con
     return CP_OK;
 }
 
+/* How a way goes on back beyond its first state. */
+typedef struct way_back {
+    double turn_rad;  /* of the heading in a step */
+    double drift_rad; /* of the front's way from the heading: the rear cuts the corner */
+} way_back;
+
+// As from the first report to the second, where there is one in the next step; else straight.
+static way_back way_back_of(const collision_view *view, int v)
+{
+    const cp_recorded_track *track = &view->track[v];
+    way_back back = {0.0, 0.0};
+    if (track->count < 2 || track->time_s[1] - track->time_s[0] > 1.5 * view->step_length_s)
+        return back;
+    const cp_vehicle_state *first = &track->state[0], *second = &track->state[1];
+    double x_m = second->front_x_m - first->front_x_m, y_m = second->front_y_m - first->front_y_m;
+    back.turn_rad = cp_wrap_angle(second->yaw_rad - first->yaw_rad);
+    if (hypot(x_m, y_m) > 0.1)
+        back.drift_rad = cp_wrap_angle(atan2(y_m, x_m) - (first->yaw_rad + 0.5 * back.turn_rad));
+    return back;
+}
+
+static cp_vehicle_state step_back(cp_vehicle_state state, way_back back, double step_length_s)
+{
+    double heading_rad = state.yaw_rad - 0.5 * back.turn_rad + back.drift_rad;
+    cp_vec2 way_m = cp_vec2_scale(cp_vec2_heading(heading_rad), state.speed_m_s * step_length_s);
+    state.front_x_m -= way_m.x;
+    state.front_y_m -= way_m.y;
+    state.yaw_rad = cp_wrap_angle(state.yaw_rad - back.turn_rad);
+    return state;
+}
+
+// In front of a track, steps states back from its first one.
+static cp_status extend_back(collision_view *view, int v, size_t steps, cp_error *error)
+{
+    size_t count = view->track[v].count;
+    way_back back = way_back_of(view, v);
+    cp_vehicle_state *state = calloc(count + steps, sizeof *state);
+    double *time_s = calloc(count + steps, sizeof *time_s);
+    if (state == NULL || time_s == NULL) {
+        free(state);
+        free(time_s);
+        return cp_fail_memory(error, "ways of vehicles");
+    }
+    memcpy(&state[steps], view->state[v], count * sizeof *state);
+    memcpy(&time_s[steps], view->time_s[v], count * sizeof *time_s);
+    for (size_t k = steps; k > 0; k--) {
+        state[k - 1] = step_back(state[k], back, view->step_length_s);
+        time_s[k - 1] = time_s[k] - view->step_length_s;
+    }
+    free(view->state[v]);
+    free(view->time_s[v]);
+    view->state[v] = state;
+    view->time_s[v] = time_s;
+    view->track[v] = (cp_recorded_track){state, time_s, count + steps};
+    return CP_OK;
+}
+
+// Back until the two are apart.
+static cp_status lead_in(collision_view *view, cp_error *error)
+{
+    const double longest_s = 2.0;
+    cp_vehicle_state state[2] = {view->state[0][0], view->state[1][0]};
+    bool are_apart = false;
+    size_t steps = 0;
+    while (!are_apart && (double)steps * view->step_length_s < longest_s) {
+        cp_rectangle rectangle[2];
+        for (int v = 0; v < 2; v++) {
+            state[v] = step_back(state[v], way_back_of(view, v), view->step_length_s);
+            rectangle[v] = cp_footprint_of_state(&state[v]);
+        }
+        are_apart = cp_rectangle_separation(&rectangle[0], &rectangle[1]) > 0.0;
+        steps++;
+    }
+    cp_status status = extend_back(view, 0, steps, error);
+    return status == CP_OK ? extend_back(view, 1, steps, error) : status;
+}
+
 static cp_status add_crash(const collision_view *view, const cp_impact *impact,
                            cp_result_rows *results, cp_error *error)
 {
     cp_impact_names names = {.sumocfg_path = view->list_path};
     for (int role = 0; role < 2; role++) {
         names.sumo_id[role] = view->listed->id[impact->vehicle[role]];
-        names.sumo_type[role] = view->listed->type[impact->vehicle[role]];
+        names.sumo_type[role] = view->type_id[impact->vehicle[role]];
         names.type[role] = view->type[impact->vehicle[role]];
     }
     cp_crash_row *row = cp_result_rows_add_crash(results);
@@ -139,31 +222,69 @@ static cp_status add_report(const collision_view *view, const char *found_as, do
                : cp_fail_memory(error, "collision of SUMO");
 }
 
+// Carried through the step in which SUMO took them away, and that step is long: what turned before,
+// or only touches after it, did something else in it.
+static bool is_doubtful(const collision_view *view, const cp_recorded_contact *contact)
+{
+    const double straight_rad = 0.01;
+    const double *yaw_rate_rad_s = contact->impact.yaw_rate_rad_s;
+    return contact->is_found && contact->is_carried && contact->is_taken &&
+           view->step_length_s > CP_FCD_COARSEST_PERIOD_S &&
+           (fmax(fabs(yaw_rate_rad_s[0]), fabs(yaw_rate_rad_s[1])) * view->step_length_s >
+                straight_rad ||
+            contact->impact.time_s > view->listed->time_s + 1e-6);
+}
+
+// Why the two have no contact: told. True when it is not known whether and how they met.
+static bool tell_missed(const collision_view *view, const cp_recorded_contact *contact)
+{
+    const cp_listed_collision *listed = view->listed;
+    const char *one = listed->id[0], *other = listed->id[1];
+    if (view->track[0].count == 0 || view->track[1].count == 0) {
+        bool is_other = view->track[0].count > 0;
+        cp_log_warning("%s:%zu: '%s' is not in the record around %g s: whether it and '%s' touch "
+                       "is not known",
+                       view->list_path, listed->line, is_other ? other : one, listed->time_s,
+                       is_other ? one : other);
+        return true;
+    }
+    if (contact->is_taken && view->step_length_s > CP_FCD_COARSEST_PERIOD_S) {
+        cp_log_warning("%s:%zu: SUMO took '%s' or '%s' away in the step of %g s in which they "
+                       "collided: how they met is not known (write the record with "
+                       "--collision.action warn, or in steps of %g s at most)",
+                       view->list_path, listed->line, one, other, view->step_length_s,
+                       CP_FCD_COARSEST_PERIOD_S);
+        return true;
+    }
+    cp_log_warning("%s:%zu: '%s' and '%s' do not touch, nearest %g m", view->list_path,
+                   listed->line, one, other, contact->gap_m);
+    return false;
+}
+
 static cp_status assess_one(collision_view *view, cp_result_rows *results,
                             cp_assessment_count *count, cp_error *error)
 {
     const cp_listed_collision *listed = view->listed;
     const char *const ids[2] = {listed->id[0], listed->id[1]};
+    const cp_recorded_report report = {listed->time_s,
+                                       {listed->speed_m_s[0], listed->speed_m_s[1]}};
     cp_recorded_contact contact;
     cp_status status =
-        cp_recorded_contact_find(view->track, ids, view->step_length_s, &contact, error);
+        cp_recorded_contact_find(view->track, ids, view->step_length_s, &report, &contact, error);
     if (status != CP_OK)
         return status;
+    bool is_missed = !contact.is_found || is_doubtful(view, &contact);
     // SUMO's files name a step by its beginning, its clock and we by its end.
     contact.impact.time_s += view->step_length_s;
     const char *found_as = "no_contact";
-    if (!contact.is_found) {
-        count->no_contact++;
-        int missing = view->track[0].count == 0 ? 0 : view->track[1].count == 0 ? 1 : -1;
-        if (missing >= 0)
-            cp_log_warning(
-                "%s:%zu: '%s' is not in the record around %g s: whether it and '%s' touch "
-                "is not known",
-                view->list_path, listed->line, ids[missing], listed->time_s, ids[1 - missing]);
-        else
-            cp_log_warning("%s:%zu: '%s' and '%s' do not touch, nearest %g m", view->list_path,
-                           listed->line, ids[0], ids[1], contact.gap_m);
-    } else if (contact.impact.verdict != CP_CONTACT_CONFIRMED) {
+    bool is_confirmed = contact.is_found && contact.impact.verdict == CP_CONTACT_CONFIRMED;
+    if (is_missed) {
+        bool is_unknown = tell_missed(view, &contact);
+        count->unknown += is_unknown;
+        count->no_contact += !is_unknown;
+        if (is_unknown)
+            contact.gap_m = NAN;
+    } else if (!is_confirmed) {
         count->filtered++;
         found_as = cp_contact_verdict_text(contact.impact.verdict);
         cp_log_info("%s:%zu: '%s' and '%s' are not counted: %s", view->list_path, listed->line,
@@ -176,6 +297,19 @@ static cp_status assess_one(collision_view *view, cp_result_rows *results,
         status = add_crash(view, &contact.impact, results, error);
     }
     return status == CP_OK ? add_report(view, found_as, contact.gap_m, results, error) : status;
+}
+
+// Of the crash added last.
+static void drop_last_pulses(cp_result_rows *results)
+{
+    if (results->crash_count == 0)
+        return;
+    for (int role = 0; role < 2; role++) {
+        cp_crash_vehicle_row *vehicle = &results->crash[results->crash_count - 1].vehicle[role];
+        free(vehicle->pulse);
+        vehicle->pulse = NULL;
+        vehicle->pulse_size = 0;
+    }
 }
 
 static int compare_crashes(const void *one, const void *other)
@@ -204,8 +338,8 @@ static cp_status check_seen(const cp_collision_list *list, const char *list_path
 }
 
 cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_path,
-                               const cp_fcd_record *record, const cp_vtypes *types,
-                               const cp_fleet *fleet, cp_result_rows *results,
+                               cp_fcd_record *record, const cp_vtypes *types, const cp_fleet *fleet,
+                               cp_assessment_keep keep, cp_result_rows *results,
                                cp_assessment_count *count, cp_error *error)
 {
     *count = (cp_assessment_count){.listed = list->count};
@@ -220,12 +354,17 @@ cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_p
                                .step_length_s = record->step_length_s};
         for (int role = 0; status == CP_OK && role < 2; role++)
             status = make_track(&view, &record->track[k][role], types, role, error);
+        if (status == CP_OK && record->of_places)
+            status = lead_in(&view, error);
         if (status == CP_OK)
             status = assess_one(&view, results, count, error);
         for (int role = 0; role < 2; role++) {
             free(view.state[role]);
             free(view.time_s[role]);
+            cp_fcd_track_destroy(&record->track[k][role]);
         }
+        if (keep == CP_KEEP_NO_PULSES)
+            drop_last_pulses(results);
     }
     if (status == CP_OK && results->crash_count > 1)
         qsort(results->crash, results->crash_count, sizeof *results->crash, compare_crashes);
@@ -270,7 +409,7 @@ static cp_status contact_of_poses(const cp_listed_configuration *row,
         }
         track[v] = (cp_recorded_track){state[v], time_s, 2};
     }
-    return cp_recorded_contact_find(track, ids, step_s, contact, error);
+    return cp_recorded_contact_find(track, ids, step_s, NULL, contact, error);
 }
 
 static cp_status facts_of_poses(const cp_listed_configuration *row, const char *list_path,
@@ -421,13 +560,17 @@ static cp_status assess_row(const cp_configuration_list *list, size_t number, co
 }
 
 cp_status cp_assess_configurations(const cp_configuration_list *list, const char *list_path,
-                                   const cp_fleet *fleet, cp_result_rows *results,
-                                   cp_assessment_count *count, cp_error *error)
+                                   const cp_fleet *fleet, cp_assessment_keep keep,
+                                   cp_result_rows *results, cp_assessment_count *count,
+                                   cp_error *error)
 {
     *count = (cp_assessment_count){.listed = list->count};
     cp_status status = CP_OK;
-    for (size_t k = 0; status == CP_OK && k < list->count; k++)
+    for (size_t k = 0; status == CP_OK && k < list->count; k++) {
         status = assess_row(list, k, list_path, fleet, results, count, error);
+        if (keep == CP_KEEP_NO_PULSES)
+            drop_last_pulses(results);
+    }
     count->crashes = results->crash_count;
     return status;
 }

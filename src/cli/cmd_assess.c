@@ -9,6 +9,7 @@
 #include "crash/crash_simulation.h"
 #include "crash/shipped_vehicle.h"
 #include "crash/validity.h"
+#include "exchange/sumo_places.h"
 #include "run/owner.h"
 #include "store/claim.h"
 #include "store/stored_crash.h"
@@ -50,7 +51,11 @@ enum {
 
 static const struct argp_option OPTIONS[] = {
     {"collisions", COLLISIONS, "FILE", 0, "SUMO's --collision-output of a finished run", 0},
-    {"fcd", FCD, "FILE", 0, "its --fcd-output; write it with --precision 6", 0},
+    {"fcd", FCD, "FILE", 0,
+     "its --fcd-output; write it with --precision 6. Without it the places that SUMO 1.24 and "
+     "later "
+     "write with each collision (colliderFront, ...) are used",
+     0},
     {"routes", ROUTES, "FILE", 0,
      "its route or additional file with vTypes: class, length and width of the vehicles; may be "
      "repeated",
@@ -74,9 +79,9 @@ static void add_to(struct argp_state *state, const char *list[], size_t *count, 
 static void check(struct argp_state *state, const arguments *a)
 {
     if ((a->collisions_path != NULL) == (a->configurations_path != NULL))
-        argp_error(state, "either --collisions with --fcd, or --configurations");
-    if ((a->collisions_path != NULL) != (a->fcd_path != NULL))
-        argp_error(state, "--collisions and --fcd belong together");
+        argp_error(state, "either --collisions, or --configurations");
+    if (a->configurations_path != NULL && a->fcd_path != NULL)
+        argp_error(state, "--fcd belongs to --collisions");
     if (a->configurations_path != NULL && a->routes_count > 0)
         argp_error(state, "--routes belongs to --collisions");
 }
@@ -138,7 +143,11 @@ static const struct argp ARGP = {
         "\v"
         "Collisions of a SUMO run: the first contact is found between the steps of the record; "
         "where SUMO took the vehicles away before (collision.action teleport, its default "
-        "minGap factor) they are carried on by their last motion. Contacts that a study would "
+        "minGap factor) they are carried on by their last motion; where one turned "
+        "and steps are longer than 0.25 s how they met is not known, and told. Without --fcd their "
+        "ways before the first "
+        "report are at the speeds of then, turning as from the first report to the next if there "
+        "is one: coarser in turns. Contacts that a study would "
         "not count are listed with their reason. time_s is SUMO's clock at the end of a step, as "
         "in a study; the files name a step by its beginning.\n\n"
         "A list of configurations has a first line of column names:\n"
@@ -190,10 +199,12 @@ static cp_status read_files(assessment *self, cp_error *error)
     cp_status status = cp_sumo_collisions_read(a->collisions_path, &self->collisions, error);
     for (size_t k = 0; status == CP_OK && k < a->routes_count; k++)
         status = cp_vtypes_read(a->routes_path[k], &self->types, error);
+    if (status == CP_OK && a->fcd_path == NULL)
+        return cp_sumo_places_record(a->collisions_path, &self->collisions, &self->record, error);
     if (status == CP_OK)
         status = cp_sumo_fcd_read(a->fcd_path, &self->collisions, BEFORE_S, AFTER_S, &self->record,
                                   error);
-    return status;
+    return status == CP_OK ? cp_sumo_places_add(&self->collisions, &self->record, error) : status;
 }
 
 // Another vehicle, unless the type has one: the name of a shipped one, or a path as seen from base
@@ -258,6 +269,7 @@ static cp_status gather_vehicles(assessment *self, cp_error *error)
 static cp_status assess(assessment *self, cp_error *error)
 {
     const arguments *a = self->arguments;
+    cp_assessment_keep keep = a->db_path != NULL ? CP_KEEP_PULSES : CP_KEEP_NO_PULSES;
     cp_crash_options options = cp_crash_options_default();
     double started_s = cp_clock_s();
     cp_status status = cp_crash_library_begin(error);
@@ -268,11 +280,11 @@ static cp_status assess(assessment *self, cp_error *error)
         status = cp_fail_memory(error, "crash options");
     else if (a->configurations_path != NULL)
         status = cp_assess_configurations(&self->configurations, a->configurations_path,
-                                          &self->fleet, &self->results, &self->count, error);
+                                          &self->fleet, keep, &self->results, &self->count, error);
     else
         status =
             cp_assess_collisions(&self->collisions, a->collisions_path, &self->record, &self->types,
-                                 &self->fleet, &self->results, &self->count, error);
+                                 &self->fleet, keep, &self->results, &self->count, error);
     cp_crash_library_end();
     self->results.wall_time_s = cp_clock_s() - started_s;
     return status;
@@ -506,8 +518,9 @@ static cp_status print(const assessment *self, cp_error *error)
     cp_table_destroy(&table);
     const cp_assessment_count *count = &self->count;
     cp_log_info("%zu listed: %zu crashes (%zu of them beyond the record), %zu not counted, %zu do "
-                "not touch",
-                count->listed, count->crashes, count->carried, count->filtered, count->no_contact);
+                "not touch, of %zu it is not known",
+                count->listed, count->crashes, count->carried, count->filtered, count->no_contact,
+                count->unknown);
     return status;
 }
 

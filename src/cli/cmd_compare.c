@@ -4,6 +4,7 @@
 #include "cli/comparison_table.h"
 #include "core/log.h"
 #include "report/answer.h"
+#include "report/caveats.h"
 #include "report/comparison_json.h"
 #include "report/grouping.h"
 #include "report/network_background.h"
@@ -136,6 +137,7 @@ typedef struct job {
     cp_study_data data;
     cp_grouping grouping;
     cp_network_backgrounds backgrounds;
+    cp_caveats caveats;
     cp_comparison *comparison; /* one a group */
     char **answer;
     cp_comparison_options options;
@@ -154,6 +156,7 @@ static void job_destroy(job *j)
     free(j->answer);
     cp_grouping_destroy(&j->grouping);
     cp_network_backgrounds_destroy(&j->backgrounds);
+    cp_caveats_destroy(&j->caveats);
     cp_model_ensemble_destroy(&j->ensemble);
     cp_study_data_destroy(&j->data);
     cp_store_close(j->store);
@@ -196,6 +199,7 @@ static json_t *group_json(const job *j, size_t k)
     if (json_object_set_new(result, "study", json_string(j->data.name)) != 0 ||
         json_object_set_new(result, "background", cp_network_backgrounds_json(&j->backgrounds)) !=
             0 ||
+        json_object_set_new(result, "caveats", cp_caveats_json(&j->caveats)) != 0 ||
         json_object_set_new(result, "answer", json_string(j->answer[k])) != 0) {
         json_decref(result);
         return NULL;
@@ -245,6 +249,14 @@ static cp_status print_tables(const job *j, cp_error *error)
     if (status == CP_OK)
         status = cp_network_backgrounds_paragraph(&j->backgrounds, &paragraph, error);
     if (status == CP_OK && paragraph[0])
+        cp_comparison_print_paragraph(paragraph, stdout);
+    free(paragraph);
+    if (status != CP_OK)
+        return status;
+    paragraph = cp_caveats_paragraph(&j->caveats);
+    if (paragraph == NULL)
+        return cp_fail_memory(error, "caveats");
+    if (paragraph[0])
         cp_comparison_print_paragraph(paragraph, stdout);
     free(paragraph);
     return status;
@@ -298,6 +310,8 @@ cp_status cmd_compare(int argc, char **argv, cp_error *error)
                                     error);
     if (status == CP_OK)
         status = cp_network_backgrounds_read(j.store, j.a.scenario, &j.backgrounds, error);
+    if (status == CP_OK)
+        status = cp_caveats_read(j.store, j.a.scenario, &j.caveats, error);
     if (status == CP_OK)
         status = compare_groups(&j, baseline, error);
     if (status == CP_OK && stored)

@@ -4,6 +4,7 @@
 #include "run/fleet.h"
 #include "study/controls_text.h"
 #include "study/plan.h"
+#include "study/type_mapping.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -82,6 +83,8 @@ static cp_status make_plan(const char *path, planned *p, cp_error *error)
     cp_status status = cp_study_load(path, &p->study, error);
     if (status == CP_OK)
         status = cp_fleet_load(&p->study, &p->fleet, error);
+    if (status == CP_OK)
+        status = cp_study_check_types(&p->study, error);
     if (status == CP_OK)
         status = cp_plan_create(&p->study, p->fleet.rows, p->fleet.count, &p->rows, error);
     return status;
@@ -226,8 +229,9 @@ static void print_summary(const planned *p)
         printf("; %zu in the database are planned no more", p->dropped);
     printf("\n");
     if (p->rows.background_count > 0)
-        printf("and %zu of %g s without driver errors or functions, one a network\n",
-               p->rows.background_count, p->rows.background[0].duration_s);
+        printf("and %zu of %g s without driver errors or functions, %zu a network\n",
+               p->rows.background_count, p->rows.background[0].duration_s,
+               p->study.background_seeds);
     if (p->study.design == CP_DESIGN_COUNTERFACTUAL)
         printf("every crash of the baseline is run again with each of %zu treatments\n",
                p->study.variant_count - 1);

@@ -2,6 +2,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/log.h"
+#include "report/caveats.h"
 #include "report/network_background.h"
 #include "run/runner.h"
 
@@ -86,7 +87,8 @@ static const struct argp ARGP = {
            "  crashpulse run sumo_scenarios/demo/study.yaml --db demo.db --jobs 2\n",
 };
 
-// What of the crashes is not the drivers' doing, when that is not little.
+// What of the crashes is not the drivers' doing, when that is not little, and what is not as
+// planned.
 static cp_status warn_of_backgrounds(const char *db_path, cp_error *error)
 {
     cp_store *store = NULL;
@@ -99,6 +101,12 @@ static cp_status warn_of_backgrounds(const char *db_path, cp_error *error)
             cp_log_warning("%s (without driver errors: %s)", backgrounds.row[k].warning,
                            backgrounds.row[k].text);
     cp_network_backgrounds_destroy(&backgrounds);
+    cp_caveats caveats = {0};
+    if (status == CP_OK)
+        status = cp_caveats_read(store, NULL, &caveats, error);
+    for (size_t k = 0; status == CP_OK && k < caveats.count; k++)
+        cp_log_warning("%s", caveats.sentence[k]);
+    cp_caveats_destroy(&caveats);
     cp_store_close(store);
     return status;
 }

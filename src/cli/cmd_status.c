@@ -2,6 +2,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/safe_text.h"
+#include "report/caveats.h"
 #include "report/network_background.h"
 #include "run/owner.h"
 #include "store/query.h"
@@ -218,6 +219,19 @@ static cp_status print_backgrounds(cp_store *store, cp_error *error)
     return status;
 }
 
+static cp_status print_caveats(cp_store *store, cp_error *error)
+{
+    cp_caveats caveats = {0};
+    cp_status status = cp_caveats_read(store, NULL, &caveats, error);
+    for (size_t k = 0; status == CP_OK && k < caveats.count; k++) {
+        printf(k == 0 ? "\nmind:\n  " : "  ");
+        cp_text_print(stdout, caveats.sentence[k], "");
+        printf("\n");
+    }
+    cp_caveats_destroy(&caveats);
+    return status;
+}
+
 cp_status cmd_status(int argc, char **argv, cp_error *error)
 {
     arguments a = {0};
@@ -233,6 +247,8 @@ cp_status cmd_status(int argc, char **argv, cp_error *error)
         status = print_failures(store, error);
     if (status == CP_OK && a.format == CP_FORMAT_TABLE)
         status = print_backgrounds(store, error);
+    if (status == CP_OK && a.format == CP_FORMAT_TABLE)
+        status = print_caveats(store, error);
     cp_store_close(store);
     return status;
 }

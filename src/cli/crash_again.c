@@ -2,6 +2,7 @@
 #include "cli/crash_again.h"
 
 #include "core/log.h"
+#include "crash/validity.h"
 
 cp_status cp_crash_again_simulate(const char *db_path, int64_t crash_id, const char *treatment,
                                   cp_crash_film *film, cp_crash_again *again, cp_error *error)
@@ -35,6 +36,9 @@ cp_status cp_crash_again_conclude(const cp_crash_again *again, cp_error *error)
     cp_log_info("crash %lld of %s and %s at %.2f s%s%s, simulated by crashpulse %s",
                 (long long)stored->id, stored->sumo_id[0], stored->sumo_id[1], stored->time_s,
                 stored->is_treated ? " under " : "", stored->treatment, stored->crashpulse_version);
+    if (!again->run.result.touched)
+        cp_log_warning("crash of %s and %s at %.2f s cannot be simulated: %s", stored->sumo_id[0],
+                       stored->sumo_id[1], stored->time_s, CP_NO_CONTACT_TEXT);
     switch (again->match) {
     case CP_STORED_SAME_BYTES:
         cp_log_info("the pulses are the stored ones, byte for byte");

@@ -22,7 +22,8 @@ typedef struct number {
 static void numbers_of(const cp_crash_run *run, int role, number numbers[NUMBER_COUNT])
 {
     const cp_severity *s = &run->result.severity[role];
-    bool frontal = run->configuration.side[role] == CP_SIDE_FRONT;
+    bool touched = run->result.touched;
+    bool frontal = touched && run->configuration.side[role] == CP_SIDE_FRONT;
     const number own[NUMBER_COUNT] = {
         {"olc_g", "OLC, g", 2, frontal ? s->olc.olc_g : NAN},
         {"olc_t1_ms", "  t1, ms", 1, frontal ? s->olc.t1_s * 1e3 : NAN},
@@ -39,14 +40,20 @@ static void numbers_of(const cp_crash_run *run, int role, number numbers[NUMBER_
         {"pdof_deg", "direction of force, deg", 1, cp_deg_from_rad(s->pdof_rad)},
         {"yaw_change_deg_s", "change of yaw rate, deg/s", 1, cp_deg_from_rad(s->yaw_change_rad_s)},
     };
-    for (size_t k = 0; k < NUMBER_COUNT; k++)
+    // Of an undisturbed motion nothing is told, as in a study.
+    for (size_t k = 0; k < NUMBER_COUNT; k++) {
         numbers[k] = own[k];
+        if (!touched)
+            numbers[k].value = NAN;
+    }
 }
 
 // OLC speaks of frontal contact only.
 static const char *olc_status(const cp_crash_run *run, int role)
 {
     bool frontal = run->configuration.side[role] == CP_SIDE_FRONT;
+    if (frontal && !run->result.touched)
+        return cp_olc_status_text(CP_OLC_SIMULATION_FAILED);
     return cp_olc_status_text(frontal ? run->result.severity[role].olc.status
                                       : CP_OLC_NOT_FRONT_CONTACT);
 }
@@ -55,6 +62,7 @@ static const char *validity(const cp_crash_run *run, int role, char text[CP_VALI
 {
     unsigned outside =
         cp_validity(run->model[0], run->model[1], &run->configuration, &run->description, role);
+    outside |= cp_validity_of_meeting(run->result.touched, run->result.shift_m);
     return cp_validity_text(outside | (run->is_damaged ? CP_OUTSIDE_DAMAGED : 0), text);
 }
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/crash_run.h"
 
+#include "crash/validity.h"
+
 #include <math.h>
 
 cp_status cp_crash_run_simulate(const cp_crash_request *request, cp_crash_run *run,
@@ -26,6 +28,6 @@ cp_status cp_crash_run_simulate(const cp_crash_request *request, cp_crash_run *r
                                &run->result, error);
     run->missed = status == CP_OK && !run->result.touched;
     if (run->missed)
-        return cp_fail(error, CP_BAD_INPUT, "the outlines of the two never met");
+        return cp_fail(error, CP_BAD_INPUT, CP_NO_CONTACT_TEXT);
     return status;
 }

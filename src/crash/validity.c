@@ -58,6 +58,13 @@ unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *mo
     return outside;
 }
 
+unsigned cp_validity_of_meeting(bool touched, double shift_m)
+{
+    if (!touched)
+        return CP_OUTSIDE_NO_CONTACT;
+    return fabs(shift_m) > CP_MOVED_LARGEST_M ? CP_OUTSIDE_MOVED : 0;
+}
+
 const char *cp_validity_text(unsigned outside, char text[CP_VALIDITY_TEXT_SIZE])
 {
     static const struct {

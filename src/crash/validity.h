@@ -4,6 +4,7 @@
 
 #include "crash/crash_configuration.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Whether one vehicle's crash lies inside what its model was calibrated for: a set of what is
@@ -18,7 +19,9 @@
     X(CP_OUTSIDE_MODEL, 6, "model")                                                                \
     X(CP_OUTSIDE_DAMAGED, 7, "damaged")                                                            \
     X(CP_OUTSIDE_NO_MODEL, 8, "no_model")                                                          \
-    X(CP_OUTSIDE_SIZE, 9, "size")
+    X(CP_OUTSIDE_SIZE, 9, "size")                                                                  \
+    X(CP_OUTSIDE_NO_CONTACT, 10, "no_contact")                                                     \
+    X(CP_OUTSIDE_MOVED, 11, "moved")
 
 enum {
 #define CP_VALIDITY_NAME(name, bit, text) name = 1u << bit,
@@ -32,11 +35,21 @@ enum {
  * barrier has infinite mass), offset and angle by the calibrated range, oblique velocity beyond
  * 15 degrees (an assumption, stated as one), side struck other than front, opponent struck other
  * than on its front, model never calibrated. Offset and angle of role 1 are those seen from it.
- * size: the model's outline was stretched. no_model and damaged (one of the two had crashed before)
- * are the caller's to add: the configuration does not tell. */
+ * size: the model's outline was stretched. no_contact, moved (below), no_model and damaged (one of
+ * the two had crashed before) are the caller's to add: the configuration does not tell. */
 unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
                      const cp_crash_configuration *configuration,
                      const cp_crash_description *description, int role);
+
+/* Where rectangles of traffic touch, models have round corners: they are moved along their relative
+ * velocity until they touch too. More than that far is told as moved: then they meet elsewhere than
+ * the rectangles did. Where they pass each other it is no_contact, and there is no severity. */
+#define CP_MOVED_LARGEST_M 0.5
+#define CP_NO_CONTACT_TEXT "the outlines of the two vehicle models do not meet"
+
+/* What the surrogate adds for both vehicles, the same wherever a crash is simulated: touched and
+ * shift_m of cp_crash_result. */
+unsigned cp_validity_of_meeting(bool touched, double shift_m);
 
 /* "inside" or the list of what is outside, "speed,angle". Returns text. */
 const char *cp_validity_text(unsigned outside, char text[CP_VALIDITY_TEXT_SIZE]);

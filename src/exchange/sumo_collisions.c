@@ -3,6 +3,7 @@
 
 #include "core/xml_file.h"
 
+#include <math.h>
 #include <search.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -77,6 +78,139 @@ static void destroy_collision(cp_listed_collision *collision)
         free(collision->type[k]);
     }
     free(collision->kind);
+    free(collision->places);
+}
+
+// "x,y" or "x,y,z" in metres; true when the element has it.
+static cp_status read_place(const cp_xml_element *element, const char *name, cp_vec2 *place_m,
+                            bool *is_there, cp_error *error)
+{
+    const char *text = cp_xml_attribute(element, name);
+    double value[3];
+    *is_there = text != NULL;
+    if (text == NULL)
+        return CP_OK;
+    const char *c = text;
+    int count = 0;
+    for (; count < 3; count++) {
+        char *end = NULL;
+        value[count] = strtod(c, &end);
+        if (end == c || !(fabs(value[count]) <= 1e9) || (*end != ',' && *end != '\0'))
+            break;
+        c = end + 1;
+        if (*end == '\0') {
+            if (count == 0)
+                break;
+            *place_m = (cp_vec2){value[0], value[1]};
+            return CP_OK;
+        }
+    }
+    return cp_fail(error, CP_BAD_INPUT, "%s:%zu: %s of <%s> must be x,y in m, found '%s'",
+                   element->path, element->line, name, element->name, text);
+}
+
+// Where both were, when the row says so.
+static cp_status read_places(const cp_xml_element *element, const double speed_m_s[2],
+                             cp_collision_places *places, bool *are_there, cp_error *error)
+{
+    static const char *const FRONT[] = {"colliderFront", "victimFront"};
+    static const char *const BACK[] = {"colliderBack", "victimBack"};
+    int count = 0;
+    cp_status status = CP_OK;
+    for (int role = 0; status == CP_OK && role < 2; role++) {
+        bool has_front = false, has_back = false;
+        status = read_place(element, FRONT[role], &places->front_m[role], &has_front, error);
+        if (status == CP_OK)
+            status = read_place(element, BACK[role], &places->back_m[role], &has_back, error);
+        count += has_front + has_back;
+        places->speed_m_s[role] = speed_m_s[role];
+    }
+    *are_there = count == 4 && !isnan(speed_m_s[0]) && !isnan(speed_m_s[1]);
+    if (status == CP_OK && count > 0 && !*are_there)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "%s:%zu: <collision> must have all of colliderFront, colliderBack, "
+                       "victimFront, victimBack, colliderSpeed, victimSpeed, or no place",
+                       element->path, element->line);
+    return status;
+}
+
+// In the order of the pair as it is listed.
+static cp_status append_places(cp_listed_collision *listed, cp_collision_places places,
+                               bool is_swapped, cp_error *error)
+{
+    if ((listed->places_count & (listed->places_count - 1)) == 0) {
+        size_t room = listed->places_count == 0 ? 1 : 2 * listed->places_count;
+        cp_collision_places *larger = realloc(listed->places, room * sizeof *larger);
+        if (larger == NULL)
+            return cp_fail_memory(error, "collisions");
+        listed->places = larger;
+    }
+    cp_collision_places *added = &listed->places[listed->places_count++];
+    *added = places;
+    for (int role = 0; is_swapped && role < 2; role++) {
+        added->front_m[role] = places.front_m[1 - role];
+        added->back_m[role] = places.back_m[1 - role];
+        added->speed_m_s[role] = places.speed_m_s[1 - role];
+    }
+    return CP_OK;
+}
+
+// Ids and what else the row tells in words; the types may be missing.
+static cp_status read_words(const cp_xml_element *element, cp_listed_collision *collision,
+                            cp_error *error)
+{
+    static const char *const ID[] = {"collider", "victim"};
+    static const char *const TYPE[] = {"colliderType", "victimType"};
+    cp_status status = CP_OK;
+    for (int role = 0; status == CP_OK && role < 2; role++) {
+        status = copy(element, ID[role], &collision->id[role], error);
+        if (status == CP_OK && cp_xml_attribute(element, TYPE[role]) != NULL)
+            status = copy(element, TYPE[role], &collision->type[role], error);
+    }
+    return status == CP_OK ? copy(element, "type", &collision->kind, error) : status;
+}
+
+static cp_status read_speeds(const cp_xml_element *element, double speed_m_s[2], cp_error *error)
+{
+    static const char *const SPEED[] = {"colliderSpeed", "victimSpeed"};
+    cp_status status = CP_OK;
+    for (int role = 0; status == CP_OK && role < 2; role++) {
+        speed_m_s[role] = NAN;
+        if (cp_xml_attribute(element, SPEED[role]) != NULL)
+            status = cp_xml_number(element, SPEED[role], -1e3, 1e3, &speed_m_s[role], error);
+    }
+    return status;
+}
+
+// One report: a new pair's words and speeds become the list's, a known pair's last report moves on.
+static cp_status take_report(reading *self, cp_listed_collision *collision,
+                             const cp_collision_places *places, cp_error *error)
+{
+    cp_collision_list *list = self->list;
+    size_t index = 0;
+    list->reports++;
+    if (strcmp(collision->id[0], collision->id[1]) == 0) {
+        list->with_themselves++;
+        return CP_OK;
+    }
+    list->without_places += places == NULL;
+    cp_status status = remember_pair(self, collision->id[0], collision->id[1], &index, error);
+    if (status == CP_OK && index == list->count) {
+        status = append(list, collision, error);
+        if (status == CP_OK)
+            *collision = (cp_listed_collision){0};
+    } else if (status == CP_OK) {
+        list->collision[index].last_s = collision->time_s;
+    }
+    if (status != CP_OK || places == NULL)
+        return status;
+    cp_listed_collision *listed = &list->collision[index];
+    // SUMO may report a pair from both sides in one step.
+    if (listed->places_count > 0 &&
+        listed->places[listed->places_count - 1].time_s == places->time_s)
+        return CP_OK;
+    bool is_swapped = collision->id[0] != NULL && strcmp(collision->id[0], listed->id[0]) != 0;
+    return append_places(listed, *places, is_swapped, error);
 }
 
 static cp_status visit(void *context, const cp_xml_element *element, cp_error *error)
@@ -89,32 +223,20 @@ static cp_status visit(void *context, const cp_xml_element *element, cp_error *e
     if (kind != NULL && (strcmp(kind, "junctionPedestrian") == 0 || strcmp(kind, "crossing") == 0 ||
                          strcmp(kind, "sharedLane") == 0))
         return CP_OK;
-    self->list->reports++;
     cp_listed_collision collision = {.line = element->line};
-    size_t index = 0;
+    cp_collision_places places = {0};
+    bool has_places = false;
     cp_status status = cp_xml_time(element, "time", &collision.time_s, error);
     if (status == CP_OK)
-        status = copy(element, "collider", &collision.id[0], error);
+        status = read_words(element, &collision, error);
     if (status == CP_OK)
-        status = copy(element, "victim", &collision.id[1], error);
+        status = read_speeds(element, collision.speed_m_s, error);
     if (status == CP_OK)
-        status = copy(element, "colliderType", &collision.type[0], error);
+        status = read_places(element, collision.speed_m_s, &places, &has_places, error);
+    places.time_s = collision.last_s = collision.time_s;
     if (status == CP_OK)
-        status = copy(element, "victimType", &collision.type[1], error);
-    if (status == CP_OK)
-        status = copy(element, "type", &collision.kind, error);
-    bool is_itself = status == CP_OK && strcmp(collision.id[0], collision.id[1]) == 0;
-    self->list->with_themselves += is_itself;
-    if (status == CP_OK && !is_itself)
-        status = remember_pair(self, collision.id[0], collision.id[1], &index, error);
-    bool is_new = status == CP_OK && !is_itself && index == self->list->count;
-    collision.last_s = collision.time_s;
-    if (is_new)
-        status = append(self->list, &collision, error);
-    else if (status == CP_OK && !is_itself)
-        self->list->collision[index].last_s = collision.time_s;
-    if (status != CP_OK || !is_new)
-        destroy_collision(&collision);
+        status = take_report(self, &collision, has_places ? &places : NULL, error);
+    destroy_collision(&collision);
     return status;
 }
 

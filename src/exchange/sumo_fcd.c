@@ -58,7 +58,7 @@ static cp_status count_vehicle(reading *self, const char *id, cp_error *error)
     return CP_OK;
 }
 
-static cp_status append(cp_fcd_track *track, cp_fcd_sample sample, cp_error *error)
+cp_status cp_fcd_track_append(cp_fcd_track *track, cp_fcd_sample sample, cp_error *error)
 {
     if ((track->count & (track->count - 1)) == 0) {
         size_t room = track->count == 0 ? 1 : 2 * track->count;
@@ -107,6 +107,19 @@ static double yaw_of(double angle_deg)
     return cp_rad_from_deg(yaw_deg <= -180.0 ? 180.0 : yaw_deg);
 }
 
+// The list of collisions does not say what the vehicle is.
+static cp_status take_type(const cp_xml_element *element, cp_fcd_track *track, cp_error *error)
+{
+    const char *type = NULL;
+    cp_status status = cp_xml_text(element, "type", &type, error);
+    if (status != CP_OK) {
+        cp_error_prefix(error, "the collisions have no colliderType and victimType, so that ");
+        return status;
+    }
+    track->type = strdup(type);
+    return track->type != NULL ? CP_OK : cp_fail_memory(error, "ways of vehicles");
+}
+
 static cp_status take_vehicle(reading *self, const cp_xml_element *element, cp_error *error)
 {
     const char *id = NULL;
@@ -152,8 +165,11 @@ static cp_status take_vehicle(reading *self, const cp_xml_element *element, cp_e
             status = cp_xml_number(element, "pos", -1e9, 1e9, &sample.lane_position_m, error);
         sample.yaw_rad = yaw_of(angle_deg);
         sample.speed_m_s = speed_m_s;
+        cp_fcd_track *track = &self->record->track[found->collision][found->role];
         if (status == CP_OK)
-            status = append(&self->record->track[found->collision][found->role], sample, error);
+            status = cp_fcd_track_append(track, sample, error);
+        if (status == CP_OK && listed->type[found->role] == NULL && track->type == NULL)
+            status = take_type(element, track, error);
     }
     return status;
 }
@@ -260,11 +276,18 @@ cp_status cp_sumo_fcd_read(const char *path, const cp_collision_list *list, doub
     return status;
 }
 
+void cp_fcd_track_destroy(cp_fcd_track *track)
+{
+    free(track->sample);
+    free(track->type);
+    *track = (cp_fcd_track){0};
+}
+
 void cp_fcd_record_destroy(cp_fcd_record *record)
 {
     for (size_t k = 0; k < record->collision_count; k++)
         for (int role = 0; role < 2; role++)
-            free(record->track[k][role].sample);
+            cp_fcd_track_destroy(&record->track[k][role]);
     free(record->track);
     *record = (cp_fcd_record){0};
 }

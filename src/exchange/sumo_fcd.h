@@ -5,6 +5,8 @@
 #include "core/geometry.h"
 #include "exchange/sumo_collisions.h"
 
+#include <stdbool.h>
+
 /* The ways of colliding vehicles out of a SUMO run's --fcd-output. SUMO's frame becomes ours here:
  * headings counter-clockwise from +x, rad. */
 
@@ -20,6 +22,7 @@ typedef struct cp_fcd_sample {
 typedef struct cp_fcd_track {
     cp_fcd_sample *sample;
     size_t count;
+    char *type; /* the vehicle's, where the list of collisions does not tell and the record does */
 } cp_fcd_track;
 
 typedef struct cp_fcd_record {
@@ -27,12 +30,18 @@ typedef struct cp_fcd_record {
     size_t collision_count;
     double step_length_s; /* between the time steps of the file */
     double simulated_s;   /* from the first to the last */
-    double vehicle_km;    /* driven by all vehicles of the file, by their speeds */
+    double vehicle_km;    /* driven by all vehicles of the file, by their speeds; 0 without one */
     double vehicle_h;
     size_t departed; /* different vehicles in the file */
+    bool of_places; /* from the collision output alone (sumo_places.h): ways begin at the reports */
 } cp_fcd_record;
 
 #define CP_FCD_COARSEST_PERIOD_S 0.25
+
+/* Append, in order of time. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_fcd_track_append(cp_fcd_track *track, cp_fcd_sample sample,
+                                            cp_error *error);
+void cp_fcd_track_destroy(cp_fcd_track *track);
 
 /* Read a file: of each listed collision both vehicles from before_s before its first report to
  * after_s after its last one. The caller destroys. A record coarser than SUMO's own steps is told,

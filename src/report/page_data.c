@@ -4,6 +4,7 @@
 #include "core/rng.h"
 #include "core/units.h"
 #include "report/answer.h"
+#include "report/caveats.h"
 #include "report/comparison_json.h"
 #include "report/example_query.h"
 #include "report/gallery.h"
@@ -338,6 +339,7 @@ typedef struct page_parts {
     json_t *gallery;
     json_t *pairs;
     json_t *backgrounds;
+    json_t *caveats;
     cp_corridor_pulses pulses;
     unsigned char *chosen;
     bool *drawn; /* of each crash */
@@ -354,6 +356,18 @@ static cp_status backgrounds_json(cp_store *store, json_t **list, cp_error *erro
         status = *list ? CP_OK : cp_fail_memory(error, "the data of a report");
     }
     cp_network_backgrounds_destroy(&backgrounds);
+    return status;
+}
+
+static cp_status caveats_json(cp_store *store, json_t **list, cp_error *error)
+{
+    cp_caveats caveats;
+    cp_status status = cp_caveats_read(store, NULL, &caveats, error);
+    if (status == CP_OK) {
+        *list = cp_caveats_json(&caveats);
+        status = *list ? CP_OK : cp_fail_memory(error, "the data of a report");
+    }
+    cp_caveats_destroy(&caveats);
     return status;
 }
 
@@ -381,6 +395,8 @@ static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t b
         status = cp_paired_points_json(data, p->drawn, &p->pairs, error);
     if (status == CP_OK)
         status = backgrounds_json(store, &p->backgrounds, error);
+    if (status == CP_OK)
+        status = caveats_json(store, &p->caveats, error);
     return status;
 }
 
@@ -394,7 +410,8 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     cp_status status = make_parts(store, data, baseline, options, &p, answer_all, error);
     if (status == CP_OK) {
         *page = json_pack(
-            "{s:O, s:O, s:I, s:o, s:o, s:o, s:o, s:O, s:O, s:o, s:o, s:O, s:O, s:O, s:O, s:o, s:o}",
+            "{s:O, s:O, s:I, s:o, s:o, s:o, s:o, s:O, s:O, s:o, s:o, s:O, s:O, s:O, s:O, s:O, s:o, "
+            "s:o}",
             "study", json_array_get(json_object_get(data->about, "study"), 0), "about", data->about,
             "unfinished", (json_int_t)data->unfinished, "scenarios", scenarios_json(data),
             "crash_types", texts_json(data->crash_type, frontal_types(data)), "variants",
@@ -405,7 +422,8 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
                       json_sprintf("%llu", (unsigned long long)data->seed), "frontal_crashes",
                       (json_int_t)p.frontal, "pulses", (json_int_t)CP_CORRIDOR_PULSES_MAX),
             "networks", p.networks, "gallery", p.gallery, "pairs", p.pairs, "backgrounds",
-            p.backgrounds, "risks", risks_json(data), "queries", queries_json());
+            p.backgrounds, "caveats", p.caveats, "risks", risks_json(data), "queries",
+            queries_json());
         if (!*page)
             status = cp_fail_memory(error, "the data of a report");
     }
@@ -415,6 +433,7 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     json_decref(p.gallery);
     json_decref(p.pairs);
     json_decref(p.backgrounds);
+    json_decref(p.caveats);
     cp_corridor_destroy(&p.pulses);
     free(p.chosen);
     free(p.drawn);

@@ -127,12 +127,13 @@ cp_status cp_child_start(const char *program, const char *const *arguments, cp_c
 
 // ---- collecting ----------------------------------------------------------------------------
 
-static void pass_on_log(FILE *messages)
+static void pass_on_log(FILE *messages, cp_said *said)
 {
     char line[8192];
     rewind(messages);
     while (fgets(line, sizeof line, messages) != NULL)
-        if (strncmp(line, LOG_PREFIX, strlen(LOG_PREFIX)) == 0)
+        if (strncmp(line, LOG_PREFIX, strlen(LOG_PREFIX)) == 0 &&
+            (said == NULL || cp_said_is_new(said, line)))
             fputs(line, stderr);
 }
 
@@ -186,7 +187,7 @@ void cp_child_collect(cp_child *child, int wait_status, cp_child_end *end)
     end->exit_code = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : -1;
     end->wall_time_s = cp_clock_s() - child->started_s;
     end->reason[0] = '\0';
-    pass_on_log(child->messages);
+    pass_on_log(child->messages, child->said);
     if (end->exit_code != 0 && end->exit_code != CP_WORKER_EXIT_ELSEWHERE)
         explain(child, wait_status, end->reason);
     fclose(child->messages);

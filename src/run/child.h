@@ -3,6 +3,7 @@
 #define RUN_CHILD_H
 
 #include "core/error.h"
+#include "run/said.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -17,6 +18,7 @@ typedef struct cp_child {
     int report;       /* read end of the pipe */
     FILE *messages;   /* what it wrote to stderr */
     double started_s; /* monotonic clock */
+    cp_said *said;    /* borrowed, for the caller to set: lines in it are not passed on again */
 } cp_child;
 
 #define CP_CHILD_REASON_SIZE 4096
@@ -39,7 +41,7 @@ CP_MUST_CHECK cp_status cp_child_start(const char *program, const char *const *a
                                        cp_child *child, cp_error *error);
 
 /* After a child ended with wait status wait_status: what it said, resources freed, child zeroed.
- * Its log lines ("crashpulse: ...") are passed on to our stderr. */
+ * Its log lines ("crashpulse: ...") are passed on to our stderr, those that child->said has not. */
 void cp_child_collect(cp_child *child, int wait_status, cp_child_end *end);
 
 /* Wait for its end and collect it; one that takes longer than limit_s since its start (INFINITY:

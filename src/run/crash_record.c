@@ -107,8 +107,10 @@ static cp_status simulate(const cp_stand_in cars[2], const cp_crash_configuratio
     cp_crash_result result = {0};
     cp_status status =
         cp_crash_simulate(&cars[0].model, &cars[1].model, configuration, &options, &result, error);
+    for (int role = 0; status == CP_OK && role < 2; role++)
+        row->vehicle[role].outside |= cp_validity_of_meeting(result.touched, result.shift_m);
     if (status == CP_OK && !result.touched)
-        status = cp_fail(error, CP_CRASH_FAILED, "the outlines of the two models never met");
+        status = cp_fail(error, CP_CRASH_FAILED, CP_NO_CONTACT_TEXT);
     for (int role = 0; status == CP_OK && role < 2; role++)
         status = keep_pulse(&result.pulse[role], &row->vehicle[role], error);
     if (status == CP_OK) {

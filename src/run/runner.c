@@ -11,6 +11,7 @@
 #include "store/claim.h"
 #include "store/query.h"
 #include "study/controls_text.h"
+#include "study/type_mapping.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -47,6 +48,7 @@ typedef struct runner {
     int64_t *waiting; /* replications still to start: waiting[next ...] */
     size_t waiting_count;
     size_t next;
+    cp_said said;             /* by workers, passed on once */
     bool *background_missing; /* of each of plan.background: to run, by us, and not yet started */
     runner_job *jobs;
     size_t running;
@@ -130,6 +132,7 @@ static cp_status probe_scenario(runner *run, const cp_study_scenario *scenario, 
     cp_status status = cp_child_start(run->worker_path, arguments, &child, error);
     if (status != CP_OK)
         return status;
+    child.said = &run->said;
     cp_child_wait(&child, run->time_limit_s, &end);
     if (end.exit_code == 0)
         return CP_OK;
@@ -155,7 +158,10 @@ static cp_status find_backgrounds(runner *run, cp_error *error)
         calloc(run->plan.background_count + 1, sizeof *run->background_missing);
     if (run->background_missing == NULL)
         return cp_fail_memory(error, "backgrounds");
-    return cp_background_rows_missing(run->store, &run->plan, run->background_missing, error);
+    cp_status status = cp_background_rows_drop_stale(run->store, &run->plan, error);
+    return status == CP_OK
+               ? cp_background_rows_missing(run->store, &run->plan, run->background_missing, error)
+               : status;
 }
 
 // Database, claims of the dead, plan, queue: in this order, so that what a dead worker held is
@@ -258,12 +264,16 @@ static const cp_background_plan_row *next_background(const runner *run)
 static cp_status start_background(runner *run, runner_job *job, cp_error *error)
 {
     const cp_background_plan_row *row = next_background(run);
+    char seed[32];
+    snprintf(seed, sizeof seed, "%" PRIu64, row->seed);
     const char *arguments[] = {"crashpulse-worker",
                                "--background",
                                "--study",
                                run->options->study_path,
                                "--scenario",
                                run->plan.scenario[row->scenario].name,
+                               "--seed",
+                               seed,
                                "--db",
                                run->options->db_path,
                                "--expect",
@@ -272,6 +282,7 @@ static cp_status start_background(runner *run, runner_job *job, cp_error *error)
                                run->parent,
                                NULL};
     cp_status status = cp_child_start(run->worker_path, arguments, &job->child, error);
+    job->child.said = &run->said;
     if (status != CP_OK)
         return status;
     job->background = row;
@@ -297,6 +308,7 @@ static cp_status start_job(runner *run, runner_job *job, cp_error *error)
                                run->parent,
                                NULL};
     cp_status status = cp_child_start(run->worker_path, arguments, &job->child, error);
+    job->child.said = &run->said;
     if (status != CP_OK)
         return status;
     run->next++;
@@ -538,6 +550,8 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
     if (status == CP_OK)
         status = probe_scenarios(&run, error);
     if (status == CP_OK)
+        status = cp_study_check_types(&run.study, error);
+    if (status == CP_OK)
         status = prepare_store(&run, error);
     if (status == CP_OK)
         status = run_jobs(&run, error);
@@ -545,6 +559,7 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
         status = conclude(&run, error);
     summary->wall_time_s = cp_clock_s() - started_s;
     end_signals(&run);
+    cp_said_destroy(&run.said);
     free(run.jobs);
     free(run.waiting);
     free(run.background_missing);

@@ -159,8 +159,15 @@ static cp_status study_background(const cp_background_job *job, const cp_study *
     const cp_study_scenario *scenario = cp_study_find_scenario(study, job->scenario);
     if (scenario == NULL)
         return cp_fail(error, CP_BAD_INPUT, "%s: has no scenario '%s'", job->path, job->scenario);
-    cp_status status =
-        cp_plan_background(study, (size_t)(scenario - study->scenarios), &own, error);
+    // The first of the study's own runs, or the one with the seed that is asked for.
+    cp_status status = CP_OK;
+    for (size_t number = 0; status == CP_OK && number < study->background_seeds; number++) {
+        cp_background_plan_row row;
+        status =
+            cp_plan_background(study, (size_t)(scenario - study->scenarios), number, &row, error);
+        if (status == CP_OK && (number == 0 || (job->seed != NULL && *job->seed == row.seed)))
+            own = row;
+    }
     if (status != CP_OK)
         return status;
     if (job->expected_hash != NULL && strcmp(job->expected_hash, own.configuration_hash) != 0)

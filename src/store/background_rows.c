@@ -3,6 +3,7 @@
 
 #include "store/store_sqlite.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,16 +57,15 @@ static cp_status find_scenario(cp_store *store, const char *name, int64_t *id, c
     return status;
 }
 
-// The same run again, and what was the study's own before.
+// The same run again.
 static cp_status delete_earlier(cp_store *store, int64_t scenario, const cp_background_rows *rows,
                                 cp_error *error)
 {
     static const char *const SQL[] = {
         "DELETE FROM background_contact WHERE scenario_id = ?1 AND (seed, step_length_s) IN "
-        "(SELECT seed, step_length_s FROM background_run WHERE scenario_id = ?1 AND ((seed = ?2 "
-        "AND step_length_s = ?3) OR (?4 <> '' AND configuration_hash <> '')))",
-        "DELETE FROM background_run WHERE scenario_id = ?1 AND ((seed = ?2 AND step_length_s = "
-        "?3) OR (?4 <> '' AND configuration_hash <> ''))"};
+        "(SELECT seed, step_length_s FROM background_run WHERE scenario_id = ?1 AND seed = ?2 "
+        "AND step_length_s = ?3)",
+        "DELETE FROM background_run WHERE scenario_id = ?1 AND seed = ?2 AND step_length_s = ?3"};
     cp_status status = CP_OK;
     for (int k = 0; k < 2 && status == CP_OK; k++) {
         cp_statement s;
@@ -73,7 +73,6 @@ static cp_status delete_earlier(cp_store *store, int64_t scenario, const cp_back
         cp_bind_integer(&s, 1, scenario);
         cp_bind_integer(&s, 2, (int64_t)rows->seed);
         cp_bind_real(&s, 3, rows->step_length_s);
-        cp_bind_text(&s, 4, rows->configuration_hash);
         if (status == CP_OK)
             status = cp_statement_run(&s, error);
         cp_statement_finish(&s);
@@ -167,6 +166,60 @@ cp_status cp_background_rows_check(cp_store *store, const char *scenario, cp_err
 {
     int64_t id = 0;
     return find_scenario(store, scenario, &id, error);
+}
+
+// Configuration hashes of all that is planned, as a JSON list; the caller frees.
+static char *planned_hashes(const cp_plan_rows *plan)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (out == NULL)
+        return NULL;
+    fputc('[', out);
+    for (size_t k = 0; k < plan->background_count; k++)
+        fprintf(out, "%s\"%s\"", k > 0 ? "," : "", plan->background[k].configuration_hash);
+    fputc(']', out);
+    int failed = ferror(out);
+    if (fclose(out) == 0 && !failed)
+        return text;
+    free(text);
+    return NULL;
+}
+
+cp_status cp_background_rows_drop_stale(cp_store *store, const cp_plan_rows *plan, cp_error *error)
+{
+#define STALE                                                                                      \
+    "configuration_hash <> '' AND configuration_hash NOT IN (SELECT value FROM json_each(?1))"
+    static const char *const SQL[] = {
+        "DELETE FROM background_contact WHERE (scenario_id, seed, step_length_s) IN (SELECT "
+        "scenario_id, seed, step_length_s FROM background_run WHERE " STALE ")",
+        "DELETE FROM background_run WHERE " STALE};
+#undef STALE
+    // A study that plans none keeps what there is.
+    if (plan->background_count == 0)
+        return CP_OK;
+    char *hashes = planned_hashes(plan);
+    cp_status status =
+        hashes != NULL ? cp_store_begin(store, error) : cp_fail_memory(error, "backgrounds");
+    if (status != CP_OK) {
+        free(hashes);
+        return status;
+    }
+    for (int k = 0; k < 2 && status == CP_OK; k++) {
+        cp_statement s;
+        status = cp_statement_prepare(store, "dropping stale backgrounds", SQL[k], &s, error);
+        cp_bind_text(&s, 1, hashes);
+        if (status == CP_OK)
+            status = cp_statement_run(&s, error);
+        cp_statement_finish(&s);
+    }
+    if (status == CP_OK)
+        status = cp_store_commit(store, error);
+    if (status != CP_OK)
+        cp_store_rollback(store);
+    free(hashes);
+    return status;
 }
 
 cp_status cp_background_rows_missing(cp_store *store, const cp_plan_rows *plan, bool *missing,

@@ -45,7 +45,7 @@ cp_background_contact_row *cp_background_rows_add_contact(cp_background_rows *ro
 void cp_background_rows_destroy(cp_background_rows *rows);
 
 /* Write them in one transaction, in place of an earlier run of the same scenario, seed and step
- * length; the study's own run also in place of what was its own before. Errors: CP_BAD_INPUT for a
+ * length. Errors: CP_BAD_INPUT for a
  * scenario that the database does not have; CP_STORE_FAILED, CP_BUSY. */
 CP_MUST_CHECK cp_status cp_background_rows_write(cp_store *store, const cp_background_rows *rows,
                                                  cp_error *error);
@@ -53,6 +53,11 @@ CP_MUST_CHECK cp_status cp_background_rows_write(cp_store *store, const cp_backg
 /* Whether the database has the scenario. Error: CP_BAD_INPUT if not. */
 CP_MUST_CHECK cp_status cp_background_rows_check(cp_store *store, const char *scenario,
                                                  cp_error *error);
+
+/* Delete the study's own runs that are not planned any more: of files or lengths before a change,
+ * or more seeds than now. Errors: CP_STORE_FAILED, CP_BUSY, CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_background_rows_drop_stale(cp_store *store, const cp_plan_rows *plan,
+                                                      cp_error *error);
 
 /* Which of the background runs that are planned are not there as planned: one entry for each of
  * plan->background. The plan itself must have been written before. */

@@ -42,7 +42,7 @@ static cp_status append(char ***list, size_t *count, const char *text, cp_error 
 
 typedef struct search {
     cp_input_file *file;
-    const char *key;
+    const cp_input_wanted *wanted;
 } search;
 
 static cp_status look_at_element(void *context, const cp_xml_element *element, cp_error *error)
@@ -61,8 +61,12 @@ static cp_status look_at_element(void *context, const cp_xml_element *element, c
 
     const char *key = cp_xml_attribute(element, "key");
     const char *value = cp_xml_attribute(element, "value");
-    if (s->key != NULL && strcmp(element->name, "param") == 0 && key != NULL && value != NULL &&
-        strcmp(key, s->key) == 0)
+    const char *id = cp_xml_attribute(element, "id");
+    if (s->wanted->types && id != NULL &&
+        (strcmp(element->name, "vType") == 0 || strcmp(element->name, "vTypeDistribution") == 0))
+        return append(&file->types, &file->type_count, id, error);
+    if (s->wanted->key != NULL && strcmp(element->name, "param") == 0 && key != NULL &&
+        value != NULL && strcmp(key, s->wanted->key) == 0)
         return append(&file->values, &file->value_count, value, error);
     return CP_OK;
 }
@@ -75,7 +79,7 @@ static cp_status look_at_entity(void *context, const char *name, cp_error *error
 
 // Whether there is anything to find: a network of a whole city need not be parsed for that. Text of
 // two bytes a character is, it cannot be searched.
-static bool is_worth_parsing(const char *content, size_t size, const char *key)
+static bool is_worth_parsing(const char *content, size_t size, const cp_input_wanted *wanted)
 {
     static const char *const WORD[] = {"<include", "variableSpeedSign", "<rerouter", "<calibrator",
                                        "<!"};
@@ -84,7 +88,8 @@ static bool is_worth_parsing(const char *content, size_t size, const char *key)
     for (size_t k = 0; k < sizeof WORD / sizeof *WORD; k++)
         if (strstr(content, WORD[k]) != NULL)
             return true;
-    return key != NULL && strstr(content, key) != NULL;
+    return (wanted->key != NULL && strstr(content, wanted->key) != NULL) ||
+           (wanted->types && strstr(content, "<vType") != NULL);
 }
 
 // The content of a compressed file, zero-terminated.
@@ -121,7 +126,7 @@ static cp_status inflate_file(const char *path, char **content, size_t *size, cp
 static cp_status look_inside(search *s, const char *content, size_t size, cp_error *error)
 {
     static const cp_xml_visitor VISITOR = {look_at_element, NULL, NULL, look_at_entity};
-    if (!is_worth_parsing(content, size, s->key))
+    if (!is_worth_parsing(content, size, s->wanted))
         return CP_OK;
     cp_error of_file = {0};
     cp_status status = cp_xml_read_all(s->file->path, NULL, &VISITOR, s, &of_file);
@@ -138,12 +143,12 @@ static bool is_compressed(const char *content, size_t size)
     return size > 2 && (unsigned char)content[0] == 0x1f && (unsigned char)content[1] == 0x8b;
 }
 
-cp_status cp_input_file_read(const char *path, const char *key, cp_input_file *file,
+cp_status cp_input_file_read(const char *path, const cp_input_wanted *wanted, cp_input_file *file,
                              cp_error *error)
 {
     char *content = NULL, *plain = NULL;
     size_t size = 0, plain_size = 0;
-    search s = {.file = file, .key = key};
+    search s = {.file = file, .wanted = wanted};
     *file = (cp_input_file){.path = path};
     cp_status status = cp_file_read(path, &content, &size, error);
     if (status != CP_OK)
@@ -174,6 +179,9 @@ void cp_input_file_destroy(cp_input_file *file)
         free(file->includes[k]);
     for (size_t k = 0; k < file->value_count; k++)
         free(file->values[k]);
+    for (size_t k = 0; k < file->type_count; k++)
+        free(file->types[k]);
+    free(file->types);
     free(file->includes);
     free(file->values);
     *file = (cp_input_file){0};

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/hash.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* A file that SUMO reads: its hash, and what other files it makes SUMO read. Compressed files
@@ -16,13 +17,20 @@ typedef struct cp_input_file {
     size_t include_count;
     char **values; /* of the parameters with the key looked for */
     size_t value_count;
+    char **types; /* ids of its vehicle types and distributions of them, where they are asked for */
+    size_t type_count;
 } cp_input_file;
 
-/* Read one, looking for <param key="..." value="..."/> with this key (NULL: none). What is no XML
- * includes nothing. Zero-initialise; the caller destroys, after a failure too. Errors: CP_BAD_INPUT
- * for a file that cannot be read; CP_NO_MEMORY. */
-CP_MUST_CHECK cp_status cp_input_file_read(const char *path, const char *key, cp_input_file *file,
-                                           cp_error *error);
+/* What to look for. */
+typedef struct cp_input_wanted {
+    const char *key; /* values of <param key="..." value="..."/>; NULL: none */
+    bool types;
+} cp_input_wanted;
+
+/* Read one. What is no XML includes nothing. Zero-initialise; the caller destroys, after a failure
+ * too. Errors: CP_BAD_INPUT for a file that cannot be read; CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_input_file_read(const char *path, const cp_input_wanted *wanted,
+                                           cp_input_file *file, cp_error *error);
 void cp_input_file_destroy(cp_input_file *file);
 
 #endif

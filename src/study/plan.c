@@ -319,13 +319,14 @@ static bool starts_alike(const cp_scenario_row *one, const cp_scenario_row *othe
 }
 
 // of: its options and files.
-static cp_status fill_background(const cp_study *study, size_t scenario, const cp_scenario_row *of,
-                                 cp_background_plan_row *row, cp_error *error)
+static cp_status fill_background(const cp_study *study, size_t scenario, size_t number,
+                                 const cp_scenario_row *of, cp_background_plan_row *row,
+                                 cp_error *error)
 {
-    // The traffic of the baseline's first replication, but for the errors.
+    // The traffic of one of the baseline's replications, but for the errors.
     *row = (cp_background_plan_row){
         .scenario = scenario,
-        .seed = cp_plan_seed(study, scenario, cp_study_baseline(study), 0),
+        .seed = cp_plan_seed(study, scenario, cp_study_baseline(study), number),
         .duration_s = study->background_s > 0.0 ? study->background_s : study->duration_s};
     char *text = take_text(json_pack(
         "{s:I, s:f, s:f, s:f, s:f, s:s, s:s}", "seed", (json_int_t)row->seed, "duration_s",
@@ -340,7 +341,8 @@ static cp_status fill_background(const cp_study *study, size_t scenario, const c
 
 static cp_status fill_backgrounds(const cp_study *study, cp_plan_rows *rows, cp_error *error)
 {
-    rows->background = calloc(study->scenario_count, sizeof *rows->background);
+    rows->background =
+        calloc(study->scenario_count * study->background_seeds + 1, sizeof *rows->background);
     if (rows->background == NULL)
         return cp_fail_memory(error, "backgrounds");
     for (size_t k = 0; study->background_s > 0.0 && k < study->scenario_count; k++) {
@@ -349,19 +351,21 @@ static cp_status fill_backgrounds(const cp_study *study, cp_plan_rows *rows, cp_
             first++;
         if (first < k)
             continue;
-        cp_status status = fill_background(study, k, &rows->scenario[k],
-                                           &rows->background[rows->background_count], error);
-        if (status != CP_OK)
-            return status;
-        rows->background_count++;
+        for (size_t number = 0; number < study->background_seeds; number++) {
+            cp_status status = fill_background(study, k, number, &rows->scenario[k],
+                                               &rows->background[rows->background_count], error);
+            if (status != CP_OK)
+                return status;
+            rows->background_count++;
+        }
     }
     return CP_OK;
 }
 
 // ---- public --------------------------------------------------------------------------------
 
-cp_status cp_plan_background(const cp_study *study, size_t scenario, cp_background_plan_row *row,
-                             cp_error *error)
+cp_status cp_plan_background(const cp_study *study, size_t scenario, size_t number,
+                             cp_background_plan_row *row, cp_error *error)
 {
     const cp_study_scenario *given = &study->scenarios[scenario];
     const cp_scenario_inputs inputs = cp_study_scenario_inputs(given);
@@ -370,7 +374,7 @@ cp_status cp_plan_background(const cp_study *study, size_t scenario, cp_backgrou
     cp_status status = of.sumo_options != NULL ? cp_scenario_files_json(&inputs, &of.files, error)
                                                : cp_fail_memory(error, "backgrounds");
     if (status == CP_OK)
-        status = fill_background(study, scenario, &of, row, error);
+        status = fill_background(study, scenario, number, &of, row, error);
     free(of.sumo_options);
     free(of.files);
     return status;

@@ -22,10 +22,10 @@ CP_MUST_CHECK cp_status cp_plan_create_for(const cp_study *study,
                                            cp_error *error);
 void cp_plan_destroy(cp_plan_rows *rows);
 
-/* The background run of one scenario, planned or not (then as long as a replication): its seed,
- * length and configuration hash.
+/* The background run of one scenario with the traffic of the baseline's replication `number`,
+ * planned or not (then as long as a replication): its seed, length and configuration hash.
  * Errors: CP_BAD_INPUT for a file that cannot be read; CP_NO_MEMORY. */
-CP_MUST_CHECK cp_status cp_plan_background(const cp_study *study, size_t scenario,
+CP_MUST_CHECK cp_status cp_plan_background(const cp_study *study, size_t scenario, size_t number,
                                            cp_background_plan_row *row, cp_error *error);
 
 /* Seed of replication number of a scenario and variant: a pure function of the study's seed and the

@@ -67,8 +67,8 @@ typedef cp_status visit_file(const cp_input_file *file, const char *name, void *
 typedef struct walk {
     visit_file *visit;
     void *context;
-    const char *key; /* of parameters to look for in the files; NULL: none */
-    json_t *seen;    /* {name: true} */
+    cp_input_wanted wanted;
+    json_t *seen; /* {name: true} */
 } walk;
 
 static cp_status walk_file(walk *w, const char *path, const char *name, cp_error *error);
@@ -95,7 +95,7 @@ static cp_status walk_file(walk *w, const char *path, const char *name, cp_error
         return CP_OK;
     if (json_object_set_new(w->seen, name, json_true()) != 0)
         return cp_fail_memory(error, name);
-    cp_status status = cp_input_file_read(path, w->key, &file, error);
+    cp_status status = cp_input_file_read(path, &w->wanted, &file, error);
     if (status == CP_OK)
         status = w->visit(&file, name, w->context, error);
     if (status == CP_OK)
@@ -188,7 +188,7 @@ cp_status cp_scenario_files_json(const cp_scenario_inputs *inputs, char **json, 
     const char *slash = strrchr(path, '/');
     cp_status status = files != NULL ? CP_OK : cp_fail_memory(error, path);
     if (status == CP_OK)
-        status = cp_input_file_read(path, NULL, &own, error);
+        status = cp_input_file_read(path, &w.wanted, &own, error);
     if (status == CP_OK)
         status = add_hash(&own, slash != NULL ? slash + 1 : path, files, error);
     if (status == CP_OK)
@@ -227,6 +227,25 @@ cp_status cp_scenario_models(const cp_scenario_inputs *inputs, cp_scenario_model
 {
     model_search search = {
         .sumocfg_path = inputs->sumocfg_path, .visit = visit, .context = context};
-    walk w = {.visit = visit_models, .context = &search, .key = "crashpulse.model"};
+    walk w = {.visit = visit_models, .context = &search, .wanted.key = "crashpulse.model"};
+    return walk_inputs(&w, inputs, error);
+}
+
+// ---- vehicle types -------------------------------------------------------------------------
+
+static cp_status add_types(const cp_input_file *file, const char *name, void *context,
+                           cp_error *error)
+{
+    json_t *types = context;
+    (void)name;
+    for (size_t k = 0; k < file->type_count; k++)
+        if (json_object_set_new(types, file->types[k], json_true()) != 0)
+            return cp_fail_memory(error, "vehicle types");
+    return CP_OK;
+}
+
+cp_status cp_scenario_types_add(const cp_scenario_inputs *inputs, json_t *types, cp_error *error)
+{
+    walk w = {.visit = add_types, .context = types, .wanted.types = true};
     return walk_inputs(&w, inputs, error);
 }

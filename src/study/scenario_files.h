@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 
+#include <jansson.h>
 #include <stddef.h>
 
 /* What a scenario consists of on disk: the .sumocfg, every file that it or the scenario's further
@@ -37,5 +38,11 @@ typedef cp_status cp_scenario_model_visit(const char *name, const char *in_file,
 CP_MUST_CHECK cp_status cp_scenario_models(const cp_scenario_inputs *inputs,
                                            cp_scenario_model_visit *visit, void *context,
                                            cp_error *error);
+
+/* Into the object types {id: true} every vehicle type, and distribution of them, of the scenario's
+ * input files. All of them are parsed for it, which takes seconds for a whole city. Errors: as
+ * above. */
+CP_MUST_CHECK cp_status cp_scenario_types_add(const cp_scenario_inputs *inputs, json_t *types,
+                                              cp_error *error);
 
 #endif

@@ -55,6 +55,7 @@ typedef struct raw_after_crash {
 
 typedef struct raw_background {
     char *duration_s;
+    char *seeds;
 } raw_background;
 
 typedef struct raw_scenario {
@@ -170,7 +171,8 @@ static const cyaml_schema_field_t AFTER_CRASH_FIELDS[] = {TEXT("stay_s", raw_aft
                                                           CYAML_FIELD_END};
 
 static const cyaml_schema_field_t BACKGROUND_FIELDS[] = {
-    TEXT("duration_s", raw_background, duration_s), CYAML_FIELD_END};
+    TEXT_OPTIONAL("duration_s", raw_background, duration_s),
+    TEXT_OPTIONAL("seeds", raw_background, seeds), CYAML_FIELD_END};
 
 static const cyaml_schema_field_t STUDY_FIELDS[] = {
     TEXT("study", raw_study, study),
@@ -301,14 +303,25 @@ static cp_status take_head(const cp_yaml_file *file, const raw_study *raw, cp_st
 static cp_status take_background(const cp_yaml_file *file, const raw_background *raw,
                                  cp_study *study, cp_error *error)
 {
+    uint64_t seeds = study->replications < 3 ? study->replications : 3;
     study->background_s = study->duration_s;
+    study->background_seeds = (size_t)seeds;
     if (raw == NULL)
         return CP_OK;
-    cp_status status = cp_yaml_number(file, "background.duration_s", raw->duration_s, 0, 1e6,
-                                      &study->background_s, error);
-    if (status == CP_OK && study->background_s > 0 && study->background_s <= study->warmup_s)
+    if (raw->duration_s == NULL && raw->seeds == NULL)
+        return cp_yaml_fail(file, error, "background",
+                            "must have duration_s or seeds, found neither");
+    cp_status status = CP_OK;
+    if (raw->duration_s != NULL)
+        status = cp_yaml_number(file, "background.duration_s", raw->duration_s, 0, 1e6,
+                                &study->background_s, error);
+    if (status == CP_OK && raw->duration_s != NULL && study->background_s > 0 &&
+        study->background_s <= study->warmup_s)
         status = cp_yaml_fail(file, error, "background.duration_s",
                               "must be 0 (none) or more than warmup_s, found %s", raw->duration_s);
+    if (status == CP_OK && raw->seeds != NULL)
+        status = take_whole(file, "background.seeds", raw->seeds, 1, 1000, &seeds, error);
+    study->background_seeds = (size_t)seeds;
     return status;
 }
 

@@ -85,8 +85,10 @@ typedef struct cp_study {
     double stay_s;        /* crashed cars stand on the road this long; default 0: they leave it at
                              once; [0, 86400] */
     double history_s;     /* kept of both cars before each crash; default 0; [0, 60] */
-    double background_s;  /* simulated without driver errors, per network; default: duration_s; 0:
-                             not at all, else > warmup_s */
+    size_t background_seeds; /* of these runs a network, each with the traffic of another of the
+                                baseline's replications; default: 3, or as many as these */
+    double background_s; /* simulated without driver errors, per network; default: duration_s; 0:
+                            not at all, else > warmup_s */
     cp_study_counterfactual counterfactual;
     cp_study_scenario *scenarios;
     size_t scenario_count;

@@ -14,7 +14,8 @@ Our crashes that SUMO lacks are counted by where they are, which is why SUMO has
 of one lane and at foes inside a junction, neither at cars on the lanes of opposite directions or of
 two edges beside a junction (road) nor at those inside a junction without right-of-way rules
 (unregulated junction), and misses corners inside the others. Exit status 1 when a collision of SUMO
-is unexplained, a match is off in time, or there are fewer than AGREEMENT_LEAST."""
+is unexplained, a match is off in time, a crash has a delta-v below 1 km/h, or there are fewer reports than
+AGREEMENT_LEAST. AGREEMENT_STEPS and AGREEMENT_SECONDS: other step lengths and a shorter run."""
 import argparse
 import collections
 import gzip
@@ -29,15 +30,19 @@ import sys
 import tempfile
 import xml.etree.ElementTree
 
+import signalised_town
+
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("build", type=pathlib.Path)
 parser.add_argument("source", type=pathlib.Path)
 parser.add_argument("network", nargs="*", help="default: all")
 parser.add_argument("--output", type=pathlib.Path, help="a table in Markdown")
-arguments = parser.parse_args()
+arguments = parser.parse_intermixed_args()
 build, source = arguments.build.resolve(), arguments.source.resolve()
 seconds = float(os.environ.get("AGREEMENT_SECONDS", "0"))
 least = int(os.environ.get("AGREEMENT_LEAST", "0"))  # reports of SUMO that each run must have
+settings = "".join(f"{name}='{os.environ[name]}' " for name in ("AGREEMENT_SECONDS", "AGREEMENT_STEPS")
+                   if name in os.environ)
 steps = [float(s) for s in os.environ.get("AGREEMENT_STEPS", "0.1 0.05").split()]
 scenarios = source / "sumo_scenarios"
 games = pathlib.Path("/usr/share/sumo/tools/game")
@@ -60,7 +65,38 @@ NETWORKS = {
     "game_square": (games / "square.sumocfg", [], 600),
     "game_ramp": (games / "ramp.sumocfg", [], 600),
     "game_grid6": (games / "grid6.sumocfg", [], 300),
+    # A road with oncoming traffic that drifts, for the length of steps.
+    "head_on_drift": (scenarios / "head_on_drift/head_on_drift.sumocfg",
+                      [("lane_drift", "rate_per_h: 20, left_1: 0.5")], 1800),
 }
+# Towns made here (signalised_town.py): how, and what drivers do wrong.
+TOWN_ERRORS = [("failed_to_see", "probability_1: 0.05"), ("late_braking", "rate_per_h: 20"),
+               ("lane_drift", "rate_per_h: 20")]
+TOWNS = {
+    "signalised_town": ({}, []),
+    "signalised_town_errors": ({}, TOWN_ERRORS),
+    "signalised_town_sublane": ({"sublane": True}, TOWN_ERRORS),
+    "signalised_town_lefthand": ({"lefthand": True}, TOWN_ERRORS),
+}
+
+
+def make_towns(folder, names):
+    """Their configurations, among the others."""
+    for name in names:
+        if name in TOWNS:
+            options, errors = TOWNS[name]
+            NETWORKS[name] = (signalised_town.make(folder / "towns" / name, **options), errors, 900)
+
+
+def creeping(database):
+    """Confirmed crashes whose cars hardly change their velocity: below 1 km/h, or simulated without contact."""
+    return [f"    {a} {b}: crash at {time_s:.2f} s with a delta-v of {delta_v_m_s * 3.6:.2f} km/h"
+            for time_s, a, b, delta_v_m_s in sqlite3.connect(database).execute(
+                "SELECT c.time_s, a.sumo_id, b.sumo_id, max(coalesce(a.delta_v_m_s, 0), coalesce(b.delta_v_m_s, "
+                "0)) AS most_m_s FROM crash AS c JOIN crash_vehicle AS a ON a.crash_id = c.id AND a.role = "
+                "'a' JOIN crash_vehicle AS b ON b.crash_id = c.id AND b.role = 'b' WHERE c.validity NOT LIKE "
+                "'%no_model%' AND a.validity NOT LIKE '%no_model%' AND b.validity NOT LIKE '%no_model%' GROUP "
+                "BY c.id HAVING most_m_s < 1 / 3.6")]
 
 
 def run(folder, name, step):
@@ -197,12 +233,14 @@ def markdown(head, rows):
     return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
 
 
-names = arguments.network or list(NETWORKS)
-columns = ["sumo", "matched", "off in time", "explained", "apart", "unexplained", "ours", "ours only"]
+names = arguments.network or list(NETWORKS) + list(TOWNS)
+columns = ["sumo", "matched", "off in time", "explained", "apart", "unexplained", "ours", "ours only",
+           "per 1000 veh-h", "below 1 km/h"]
 print(f"{'network':20} {'step s':>6} " + " ".join(f"{c:>11}" for c in columns))
 agrees = True
 table, types, singles = [], [], []
 with tempfile.TemporaryDirectory() as folder:
+    make_towns(pathlib.Path(folder), names)
     for name in names:
         for step in steps:
             database = run(pathlib.Path(folder), name, step)
@@ -211,6 +249,11 @@ with tempfile.TemporaryDirectory() as folder:
                 break
             outlines = junctions(NETWORKS[name][0])
             counts, reasons, ours, bad, apart = compare(database, step, outlines)
+            slow = creeping(database)
+            hours, = sqlite3.connect(database).execute("SELECT vehicle_h FROM replication").fetchone()
+            counts["below 1 km/h"] = len(slow)
+            counts["per 1000 veh-h"] = round(1000 * counts["ours"] / hours) if hours else 0
+            bad += slow
             print(f"{name:20} {step:6g} " + " ".join(f"{counts[c]:11d}" for c in columns))
             for label, counter in (("reasons", reasons), ("ours only", ours)):
                 if counter:
@@ -232,7 +275,7 @@ with tempfile.TemporaryDirectory() as folder:
 if arguments.output:
     arguments.output.write_text("\n\n".join((
         "# SUMO's collisions against ours, and what was found",
-        f"Made by `tests/agreement/agreement.py build . --output FILE{''.join(' ' + n for n in arguments.network)}`, "
+        f"Made by `{settings}tests/agreement/agreement.py build . --output FILE{''.join(' ' + n for n in arguments.network)}`, "
         "whose head says what the columns mean (`cmake --build build --target agreement` runs every network).",
         markdown(["network", "step s", *columns, "reasons"], table),
         "## Crashes by type and place",

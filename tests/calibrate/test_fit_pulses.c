@@ -59,7 +59,7 @@ static void pulses_are_loaded_with_their_conditions(void **state)
     assert_near(fit.reference.cases[1].speed_km_h, 54.0, 0.0);
     assert_near(fit.reference.cases[1].offset_mm, -350.0, 0.0);
     assert_near(fit.reference.cases[1].angle_deg, 20.0, 0.0);
-    assert_near(fit.reference.cases[1].olc_g, fit.pulses[1].marks.olc_g, 0.0);
+    assert_true(isnan(fit.pulses[1].marks.olc_g) && fit.reference.cases[1].olc_g == 0.0);
     assert_int_equal(strlen(fit.reference.hash), 64);
     assert_true(fit.range.given);
     assert_near(fit.range.offset_max_mm, 10.0, 0.0);

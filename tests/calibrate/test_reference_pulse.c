@@ -52,7 +52,8 @@ static void sensors_of_a_test_are_averaged(void **state)
     assert_near(pulse.marks.t_v0_s, 10.0 / a_m_s2, 1e-9);
     assert_near(pulse.marks.peak_g, 15.0, 1.5);
     assert_near(pulse.marks.crush_m, 0.5 * 100.0 / a_m_s2, 1e-4);
-    assert_near(pulse.condition.olc_g, pulse.marks.olc_g, 0.0);
+    // It ends before the virtual occupant moves with the car.
+    assert_true(isnan(pulse.marks.olc_g) && pulse.condition.olc_g == 0.0);
     cp_reference_pulse_destroy(&pulse);
     ev5_folder_close(&shop);
 }

@@ -76,6 +76,21 @@ with tempfile.TemporaryDirectory() as name:
         "--pulse", str(pulse), "--raw")
     assert page.stat().st_size > 10000 and len(pulse.read_text().splitlines()) > 400
 
+    # Models that pass each other: the words of the study, no numbers of an undisturbed motion.
+    passing = folder / "passing.db"
+    with sqlite3.connect(db) as whole, sqlite3.connect(passing) as copy:
+        whole.backup(copy)
+        copy.execute("UPDATE crash_vehicle SET cog_x_m = cog_x_m + 500, cog_y_m = cog_y_m + 300 WHERE "
+                     "role = 'b' AND crash_id = ?", (crashes[0],))
+        copy.execute("DELETE FROM pulse WHERE crash_id = ?", (crashes[0],))
+    again = run(crashpulse, "crash", "--from", str(passing), "--crash", str(crashes[0]), "--format",
+                "csv")
+    assert "cannot be simulated: the outlines of the two vehicle models do not meet" in again.stderr
+    for record in csv.DictReader(again.stdout.splitlines()):
+        assert "no_contact" in record["validity"].split(","), record
+        assert record["olc_status"] in ("simulation_failed", "not_front_contact"), record
+        assert record["delta_v_km_h"] == "" and record["olc_g"] == "", record
+
     # A dictionary for a next codec, trained on these pulses: zstd's magic number, the number 1, 4 KB.
     dictionary = folder / "next.zdict"
     run(sys.executable, arguments.train, str(dictionary), str(db))

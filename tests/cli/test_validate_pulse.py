@@ -47,6 +47,23 @@ class OwnPulse(unittest.TestCase):
             self.assertEqual([row["measure"] for row in rows][:2], ["olc_g", "t_v0_ms"])
             self.assertEqual(float(rows[0]["model"]), own["olc_g"]["model"], "all digits")
 
+    def test_a_record_that_ends_early_has_no_olc(self):
+        with tempfile.TemporaryDirectory() as folder:
+            whole, cut = os.path.join(folder, "whole.csv"), os.path.join(folder, "cut.csv")
+            call("crash", CAMRY, "--speed", "56", "--pulse", whole)
+            with open(whole, encoding="utf-8") as file:
+                rows = list(csv.DictReader(file))
+            for end_s, known in ((0.06, False), (0.15, True)):
+                with open(cut, "w", encoding="utf-8") as file:
+                    file.write("time_s,ax_m_s2,vx_m_s\n" + "".join(
+                        f"{row['time_s']},{row['ax_m_s2']},{row['vx_m_s']}\n" for row in rows
+                        if row["vehicle"] == "a" and float(row["time_s"]) <= end_s))
+                done = call("validate", CAMRY, "--pulse", cut, "--until", str(1000 * end_s),
+                            "--format", "json")
+                self.assertEqual(json.loads(done.stdout)["olc_g"]["reference"] is not None, known)
+                self.assertEqual("cut.csv: ends at 60.0 ms, before its OLC is decided" in done.stderr,
+                                 not known, done.stderr)
+
     def test_what_is_wrong_is_said(self):
         self.assertIn("needs the numbers of its channels", call("validate", CAMRY, "--pulse", VEHICLES, code=2).stderr)
         self.assertIn("holds no .EV5 file", call("validate", CAMRY, "--pulse", VEHICLES,

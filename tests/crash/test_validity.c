@@ -76,17 +76,26 @@ static void the_text_lists_all_reasons(void **state)
     char text[CP_VALIDITY_TEXT_SIZE];
     assert_string_equal(cp_validity_text(0, text), "inside");
     assert_string_equal(cp_validity_text(CP_OUTSIDE_ANGLE | CP_OUTSIDE_SPEED, text), "speed,angle");
-    unsigned all = 0x7f;
+    unsigned all = ~0u;
     assert_true(strlen(cp_validity_text(all, text)) < CP_VALIDITY_TEXT_SIZE - 1);
     assert_non_null(strstr(text, "model"));
+}
+
+static void how_models_meet(void **state)
+{
+    (void)state;
+    char text[CP_VALIDITY_TEXT_SIZE];
+    assert_int_equal(cp_validity_of_meeting(true, 0.5), 0);
+    assert_int_equal(cp_validity_of_meeting(true, -0.51), CP_OUTSIDE_MOVED);
+    assert_string_equal(cp_validity_text(cp_validity_of_meeting(true, 0.51), text), "moved");
+    assert_string_equal(cp_validity_text(cp_validity_of_meeting(false, 9.0), text), "no_contact");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_reference_study_is_inside),
-        cmocka_unit_test(every_limit_is_named),
-        cmocka_unit_test(speed_counts_by_mass),
+        cmocka_unit_test(the_reference_study_is_inside), cmocka_unit_test(every_limit_is_named),
+        cmocka_unit_test(speed_counts_by_mass),          cmocka_unit_test(how_models_meet),
         cmocka_unit_test(the_text_lists_all_reasons),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -61,6 +61,40 @@ static void a_vehicle_that_collides_with_itself_is_passed_over(void **unused)
     free(text);
 }
 
+// As SUMO 1.24 writes them; the second report names the two the other way round.
+static void places_of_later_versions(void **unused)
+{
+    (void)unused;
+    cp_collision_list list;
+    cp_error error = {0};
+    char *one = with(GOOD, "pos=\"14.3\"",
+                     "colliderFront=\"10.00,2.00\" colliderBack=\"5.50,2.00\" "
+                     "victimFront=\"11.00,3.50,0.20\" victimBack=\"15.00,3.50,0.20\"");
+    char *text = with(one, "pos=\"15.0\"",
+                      "colliderFront=\"10.50,3.5\" colliderBack=\"14.5,3.5\" "
+                      "victimFront=\"10.7,2\" victimBack=\"6.2,2\"");
+    if (cp_sumo_collisions_read(write_file(text), &list, &error) != CP_OK)
+        fail_msg("%s", error.text);
+    const cp_listed_collision *first = &list.collision[0];
+    assert_int_equal(list.without_places, 1); /* the last one */
+    assert_int_equal(first->places_count, 2);
+    assert_int_equal(list.collision[1].places_count, 0);
+    assert_true(first->speed_m_s[0] == 13.9 && first->speed_m_s[1] == 9.7);
+    assert_true(first->places[0].front_m[0].x == 10.0 && first->places[0].back_m[1].x == 15.0);
+    assert_true(first->places[1].front_m[0].x == 10.7 && first->places[1].back_m[0].x == 6.2);
+    assert_true(first->places[1].front_m[1].y == 3.5 && first->places[1].speed_m_s[0] == 9.7);
+    cp_collision_list_destroy(&list);
+    free(text);
+    free(one);
+
+    // Types are older than the rest of a row, and not everywhere.
+    text = with(GOOD, "colliderType=\"car\" victimType=\"van\"", "");
+    assert_int_equal(cp_sumo_collisions_read(write_file(text), &list, &error), CP_OK);
+    assert_true(list.collision[0].type[0] == NULL && list.collision[0].type[1] == NULL);
+    cp_collision_list_destroy(&list);
+    free(text);
+}
+
 static void times_may_be_clock_times(void **unused)
 {
     (void)unused;
@@ -96,6 +130,15 @@ static void bad_files_are_told_by_line(void **unused)
         {"<collisions>", "<fcd-export>", "file:3: must be <collisions>, found <fcd-export>"},
         {"</collisions>\n", "", "is not XML: no element found"},
         {"type=\"junction\"", "type=junction", "file:4: is not XML"},
+        {"colliderSpeed=\"13.9\"", "colliderSpeed=\"fast\"",
+         "file:4: colliderSpeed of <collision> must be a number, found 'fast'"},
+        {"pos=\"14.3\"", "colliderFront=\"1;2\"",
+         "file:4: colliderFront of <collision> must be x,y in m, found '1;2'"},
+        {"pos=\"14.3\"", "victimBack=\"1\"",
+         "file:4: victimBack of <collision> must be x,y in m, found '1'"},
+        {"pos=\"14.3\"", "victimBack=\"1,nan\"", "must be x,y in m, found '1,nan'"},
+        {"pos=\"14.3\"", "victimBack=\"1,2\"",
+         "file:4: <collision> must have all of colliderFront, colliderBack"},
     };
     for (size_t k = 0; k < sizeof BAD / sizeof *BAD; k++) {
         cp_collision_list list;
@@ -117,6 +160,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pair_is_listed_once_at_its_first_report),
+        cmocka_unit_test(places_of_later_versions),
         cmocka_unit_test(a_vehicle_that_collides_with_itself_is_passed_over),
         cmocka_unit_test(times_may_be_clock_times),
         cmocka_unit_test(bad_files_are_told_by_line),

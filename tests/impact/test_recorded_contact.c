@@ -39,7 +39,7 @@ static cp_recorded_contact find(const recording *one, const recording *other, do
     cp_recorded_contact contact;
     cp_error error = {0};
     const cp_recorded_track track[2] = {one->track, other->track};
-    assert_int_equal(cp_recorded_contact_find(track, IDS, dt_s, &contact, &error), CP_OK);
+    assert_int_equal(cp_recorded_contact_find(track, IDS, dt_s, NULL, &contact, &error), CP_OK);
     return contact;
 }
 
@@ -121,12 +121,51 @@ static void those_who_pass_do_not_touch(void **unused)
     assert_true(isinf(contact.gap_m));
 }
 
+/* Steps of 1 s, and SUMO takes both away, or sets one down 8 m on, in the step in which they
+ * collide: on at the speeds it reports, not at those of the step before, and never by way of the
+ * new place. */
+static void taken_away_in_the_step_of_the_report(void **unused)
+{
+    (void)unused;
+    const drive braking = {.speed_m_s = 20.0};
+    const drive crossing = {
+        .x_m = 58.0, .y_m = -26.0, .yaw_rad = 0.5 * 3.14159265358979323846, .speed_m_s = 10.0};
+    recording one, other;
+    cp_error error = {0};
+    cp_recorded_contact contact;
+    for (int put = 0; put < 2; put++) {
+        record(&one, &braking, 0, 1.0, put ? 3.0 : 2.0);
+        record(&other, &crossing, 1, 1.0, put ? 3.0 : 2.0);
+        if (put)
+            one.state[3].front_x_m += 8.0;
+        const cp_recorded_track track[2] = {one.track, other.track};
+        // It braked from 20 to 18 m/s in that step, which the record does not have.
+        const cp_recorded_report report = {3.0, {18.0, 10.0}};
+        assert_int_equal(cp_recorded_contact_find(track, IDS, 1.0, &report, &contact, &error),
+                         CP_OK);
+        assert_true(contact.is_taken && contact.is_found && contact.is_carried);
+        assert_true(contact.impact.time_s > 2.0 && contact.impact.time_s < 3.0);
+        int of_one = contact.impact.vehicle[0] == 0 ? 0 : 1;
+        assert_true(contact.impact.state[of_one].speed_m_s < 20.0);
+        assert_true(contact.impact.state[of_one].front_x_m <= 58.0 + 1e-9);
+    }
+
+    // Seen in that step: nothing to carry on.
+    record(&one, &EAST, 0, 0.1, 1.5);
+    record(&other, &WEST, 1, 0.1, 1.5);
+    const cp_recorded_track track[2] = {one.track, other.track};
+    const cp_recorded_report report = {1.0, {20.0, 10.0}};
+    assert_int_equal(cp_recorded_contact_find(track, IDS, 0.1, &report, &contact, &error), CP_OK);
+    assert_true(contact.is_found && !contact.is_taken && !contact.is_carried);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(found_between_two_steps),
         cmocka_unit_test(found_beyond_the_record),
         cmocka_unit_test(turning_is_carried_on),
+        cmocka_unit_test(taken_away_in_the_step_of_the_report),
         cmocka_unit_test(those_who_pass_do_not_touch),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -106,11 +106,44 @@ def careless(folder):
     assert background["text"].startswith(f"{crashes} crash"), background
     run("report", db, "--output", folder / "report.html")
     assert "the network's doing, not the drivers'" in (folder / "report.html").read_text()
+    # What lies where it crashes by itself, with and without; and it can be left out.
+    (at_sites, all_of_them), = query(db, "SELECT crashes_at_flagged, crashes FROM flagged_sites WHERE "
+                                         "is_baseline")
+    assert 0 < at_sites <= all_of_them == baseline
+    sentence = ("in crossing there lie within 20 m of where the network crashes without driver errors "
+                f"{at_sites} of the {baseline} crashes of baseline")
+    assert sentence in result.stderr and sentence in run("status", db).stdout
+    assert any(sentence in text for text in json.loads(
+        run("compare", db, "--no-store", "--format", "json").stdout)["caveats"])
+    assert sentence in (folder / "report.html").read_text()
+    figures = json.loads(run("compare", db, "--no-store", "--format", "json", "--where",
+                             "at_flagged_site = 0").stdout)["variants"]
+    assert figures[0]["crashes"] == baseline - at_sites, figures
+    # An error that never acted, as the counters have it.
+    connection = sqlite3.connect(db)
+    connection.execute("UPDATE replication SET counters = '{\"failed_to_see.overlooked_pairs\": 0.0}'")
+    connection.commit()
+    connection.close()
+    assert "in crossing the driver error failed_to_see never acted in" in run("status", db).stdout
     # Every crash of it with its place, cars and speed.
     rows = query(db, "SELECT count(*), count(time_s + x_m + y_m + closing_speed_m_s), count(crash_type || "
                      "vehicle_1 || vehicle_2), min(closing_speed_m_s) > 0 FROM background_contact WHERE "
                      "reason = 'crash' AND crash_type <> ''")
     assert rows == [(crashes, crashes, crashes, 1)], rows
+
+
+def short(folder):
+    # Demand for some seconds of many, over three seeds: told, each with traffic of its own.
+    study, db = crossing_study.write(folder, arguments.network, 3, 4000), folder / "short.db"
+    routes = folder / "net/crossing.rou.xml"
+    vehicle = '<vehicle id="{}" type="car" depart="{}"><route edges="west_in east_out"/></vehicle>'
+    routes.write_text('<routes><vType id="car"/><vType id="van"/>' + "".join(vehicle.format(k, 2 * k) for k in range(9)) +
+                      "</routes>")
+    result = run("run", study, "--db", db)
+    assert "in crossing the traffic of 6 replications was over before duration_s, " in result.stderr
+    assert "3 a network" in run("plan", study).stdout
+    seeds = [row[0] for row in query(db, "SELECT seed FROM background_run ORDER BY 1")]
+    assert seeds == [row[0] for row in query(db, "SELECT DISTINCT seed FROM replication ORDER BY 1")]
 
 
 def failing(folder):
@@ -128,10 +161,18 @@ def failing(folder):
         assert "background of scenario crossing" in result.stderr and "nowhere" in result.stderr, result.stderr
         assert query(db, "SELECT status, count(*) FROM replication GROUP BY 1") == [("done", 2)]
         assert query(db, "SELECT count(*) FROM background_run") == [(0,)]
+    # A replication that failed is missing, and not at random.
+    connection = sqlite3.connect(db)
+    connection.execute("UPDATE replication SET status = 'failed' WHERE variant_id = (SELECT variant_id "
+                       "FROM replication LIMIT 1)")
+    connection.commit()
+    connection.close()
+    assert "failed and are in no figure: what SUMO ended itself is not missing at random" in run(
+        "status", db).stdout
 
 
 with tempfile.TemporaryDirectory() as name:
-    for case in (careful, careless, failing):
+    for case in (careful, careless, short, failing):
         folder = pathlib.Path(name) / case.__name__
         folder.mkdir()
         case(folder)

@@ -141,6 +141,7 @@ static void crash_without_simulation_is_kept(void **state)
         assert_true(isnan(vehicle->crush_m));
         assert_null(vehicle->pulse);
         assert_true(vehicle->speed_m_s == 15.0);
+        assert_true((vehicle->outside & CP_OUTSIDE_NO_CONTACT) != 0);
     }
     cp_result_rows_destroy(&rows);
 }

@@ -168,6 +168,13 @@ with tempfile.TemporaryDirectory() as name:
         routes.write_text("<routes>" + (town if named else re.sub("<param[^>]*/>", "", town)) + flows +
                           "</routes>")
         study.write_text(STUDY.format(design="paired_seeds", duration_s=160, default=default))
+        # A mapping of a type that is nowhere would do nothing.
+        for command in (["plan", study], ["run", study, "--db", folder / f"town{named}.db"]):
+            result = run(crashpulse, *command, expect=2)
+            check("vehicles.types[0].type must be a vehicle type of a scenario, found 'mapped'; there "
+                  "are traffic, small_car" in result.stderr, result.stderr)
+        study.write_text(re.sub(r"  types: .*\n", "", study.read_text()) +
+                         ("" if default else "  types: []\n"))
         result = run(crashpulse, "run", study, "--db", folder / f"town{named}.db")
         connection = sqlite3.connect(folder / f"town{named}.db")
         rows = {(row[0], row[1], row[2]) for row in connection.execute(

@@ -44,6 +44,19 @@ static void write_run(cp_store *store, uint64_t seed, const char *hash, size_t c
     cp_background_rows_destroy(&rows);
 }
 
+// The plan's only run has this hash.
+static void drop_stale(cp_store *store, const char *hash)
+{
+    small_plan plan;
+    cp_background_plan_row planned = {.scenario = 0, .seed = 7, .duration_s = 60.0};
+    cp_error error = {0};
+    small_plan_fill(&plan);
+    snprintf(planned.configuration_hash, sizeof planned.configuration_hash, "%s", hash);
+    plan.rows.background = &planned;
+    plan.rows.background_count = hash[0] != '\0';
+    assert_ok(cp_background_rows_drop_stale(store, &plan.rows, &error), &error);
+}
+
 static bool is_missing(cp_store *store, const char *hash)
 {
     small_plan plan;
@@ -70,11 +83,15 @@ static void a_run_is_there_until_the_study_changes(void **state)
     assert_true(number_of(store, "SELECT crashes + 10 * other_contacts FROM "
                                  "background_by_scenario") == 21);
 
-    // Another run beside it counts too; the study's own takes the place of its own only.
+    // Another run beside it counts too; what is not planned any more goes, but for others' runs.
     write_run(store, 8, "", 2);
     assert_true(number_of(store, "SELECT crashes + 10 * other_contacts FROM "
                                  "background_by_scenario") == 32);
     write_run(store, 9, "bb", 1);
+    assert_false(is_missing(store, "aa"));
+    drop_stale(store, "");
+    assert_false(is_missing(store, "aa"));
+    drop_stale(store, "bb");
     assert_true(is_missing(store, "aa"));
     assert_false(is_missing(store, "bb"));
     assert_true(number_of(store, "SELECT sum(seed) FROM background_run") == 17);

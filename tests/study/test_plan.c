@@ -229,14 +229,15 @@ static void a_network_has_one_background(void **state)
         snprintf(longer, sizeof longer, "%s%s", GOOD_STUDY, CASE[k].sweep);
         load(f, longer, &study, &rows);
         assert_int_equal(rows.scenario_count, CASE[k].scenarios);
-        assert_int_equal(rows.background_count, CASE[k].backgrounds);
+        size_t seeds = study.background_seeds;
+        assert_int_equal(rows.background_count, seeds * CASE[k].backgrounds);
         for (size_t b = 0; b < rows.background_count; b++) {
             cp_background_plan_row alone;
             cp_error error = {0};
             size_t scenario = rows.background[b].scenario;
-            assert_ok(cp_plan_background(&study, scenario, &alone, &error), &error);
+            assert_ok(cp_plan_background(&study, scenario, b % seeds, &alone, &error), &error);
             assert_string_equal(alone.configuration_hash, rows.background[b].configuration_hash);
-            assert_int_equal(alone.seed, cp_plan_seed(&study, scenario, 0, 0));
+            assert_int_equal(alone.seed, cp_plan_seed(&study, scenario, 0, b % seeds));
             assert_true(b == 0 || strcmp(rows.background[0].configuration_hash,
                                          rows.background[b].configuration_hash) != 0);
         }

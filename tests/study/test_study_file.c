@@ -122,9 +122,11 @@ static void background_has_a_length_of_its_own_or_none(void **state)
     static const struct {
         const char *section;
         double background_s;
-    } CASE[] = {{"background: {duration_s: 300}\n", 300.0},
-                {"background: {duration_s: 0}\n", 0.0},
-                {"background: {duration_s: 3600}\n", 3600.0}};
+        size_t seeds;
+    } CASE[] = {{"background: {duration_s: 300}\n", 300.0, 3},
+                {"background: {duration_s: 0}\n", 0.0, 3},
+                {"background: {seeds: 7}\n", 900.0, 7},
+                {"background: {duration_s: 3600, seeds: 1}\n", 3600.0, 1}};
     for (size_t k = 0; k < sizeof CASE / sizeof *CASE; k++) {
         cp_study study;
         cp_error error = {0};
@@ -135,6 +137,7 @@ static void background_has_a_length_of_its_own_or_none(void **state)
         free(text);
         assert_ok(cp_study_load(f->study, &study, &error), &error);
         assert_true(study.background_s == CASE[k].background_s);
+        assert_int_equal(study.background_seeds, CASE[k].seeds);
         cp_study_destroy(&study);
     }
 }
@@ -185,9 +188,11 @@ static const struct {
     {"warmup_s: 60", "after_crash: {stays_s: 1}", "Unexpected key: stays_s"},
     {"warmup_s: 60", "warmup_s: 60\nbackground: {duration_s: 60}",
      "study.yaml:8: background.duration_s must be 0 (none) or more than warmup_s, found 60"},
+    {"warmup_s: 60", "background: {seeds: 0}", "study.yaml:7: background.seeds must be"},
     {"warmup_s: 60", "background: {duration_s: -1}",
      "study.yaml:7: background.duration_s must be between 0 and 1e+06, found -1"},
-    {"warmup_s: 60", "background: {}", "Missing required mapping field: duration_s"},
+    {"warmup_s: 60", "background: {}",
+     "study.yaml:7: background must have duration_s or seeds, found neither"},
     {"replications: 3", "replications: 2.5", "study.yaml:5: replications must be a whole number"},
     {"replications: 3", "replications: 0", "study.yaml:5: replications"},
     {"seed: 20261122", "seed: -1", "study.yaml:4: seed"},

@@ -87,6 +87,7 @@ static const cp_control_parameter PARAMETERS[] = {
 typedef struct fcw_car {
     cp_braking braking;
     bool is_warned; /* from the warning until the danger has passed */
+    double warned_s;
     uint64_t warnings;
 } fcw_car;
 
@@ -164,11 +165,12 @@ static cp_status watch(fcw *self, const cp_control_context *context,
     self->warnings++;
     self->heeded += heeds;
     car->is_warned = true;
+    car->warned_s = threat.instant_s + parameter[LATENCY_S];
     car->braking = (cp_braking){0};
     if (!heeds)
         return CP_OK;
     cp_brake brake = self->brake;
-    brake.start_s = threat.instant_s + parameter[LATENCY_S] + reaction_s;
+    brake.start_s = car->warned_s + reaction_s;
     cp_braking_begin(&car->braking, &brake);
     return CP_OK;
 }
@@ -199,6 +201,9 @@ static cp_status step_car(fcw *self, const cp_control_context *context,
                                                          context->parameter[HOLD_S])
                                    : !is_calm;
     }
+    if (status == CP_OK && car->is_warned)
+        status = cp_acts_note(context->acts, motion->after.vehicle, CP_ACT_WARNING, car->warned_s,
+                              error);
     if (status != CP_OK || !car->is_warned || !car->braking.is_requesting)
         return status;
     status = cp_braking_command(&car->braking, self->traffic, motion, context->actuation, error);

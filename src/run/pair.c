@@ -31,6 +31,8 @@ static void keep_roles(cp_branch_answer *answer, const char *const ids[2])
     SWAP(bool, answer->found.had_crashed);
     SWAP(const char *, answer->ids);
     SWAP(const char *, answer->types);
+    SWAP(const char *, answer->lanes);
+    answer->is_swapped = !answer->is_swapped;
     SWAP(cp_sumo_type, answer->type);
 #undef SWAP
 }
@@ -84,8 +86,12 @@ static cp_status fill_crash(const cp_simulation *simulation, const cp_branch_ans
         names.type[role] = answer->type[role];
         names.at_fault[role] = answer->found.at_fault[role];
         names.had_crashed[role] = answer->found.had_crashed[role];
+        names.lane[role] = answer->lanes[role];
     }
-    return cp_crash_record_fill(&answer->found.impact, &names, fleet, row, error);
+    cp_status status = cp_crash_record_fill(&answer->found.impact, &names, fleet, row, error);
+    return status == CP_OK ? cp_participant_rows_copy(&answer->found.participants,
+                                                      answer->is_swapped, &row->participants, error)
+                           : status;
 }
 
 static cp_status copy_samples(const cp_branch_answer *answer, cp_sample_row **sample, size_t *count,

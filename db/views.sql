@@ -433,7 +433,7 @@ WITH baseline_olc AS (
 )
 SELECT s.name AS scenario, v.name AS variant, r.number AS replication, c.replication_id,
        r.scenario_id, x.variant_id, x.crash_id,
-       x.outcome, x.outcome_olc, x.reason, x.detail, x.new_crashes,
+       x.outcome, x.outcome_olc, x.reason, x.detail, x.new_crashes, x.vanished_crashes,
        c.time_s AS baseline_time_s, n.checkpoint_s,
        c.crash_type AS baseline_crash_type, c.validity AS baseline_validity,
        c.closing_speed_m_s AS baseline_closing_speed_m_s,
@@ -463,7 +463,9 @@ SELECT s.name AS scenario, v.name AS variant, r.scenario_id, x.variant_id,
        sum(x.outcome = 'mitigated') AS mitigated,
        sum(x.outcome = 'aggravated') AS aggravated,
        sum(x.outcome = 'unchanged') AS unchanged,
-       coalesce(sum(x.new_crashes), 0) AS new_crashes
+       coalesce(sum(x.new_crashes), 0) AS new_crashes,
+       -- NULL: not known (of an earlier version)
+       sum(x.vanished_crashes) AS vanished_crashes
 FROM counterfactual AS x
 JOIN crash AS c ON c.id = x.crash_id
 JOIN replication AS r ON r.id = c.replication_id

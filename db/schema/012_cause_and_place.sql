@@ -19,6 +19,10 @@ ALTER TABLE counterfactual_vehicle ADD COLUMN edge TEXT;
 ALTER TABLE counterfactual_vehicle ADD COLUMN junction TEXT;
 ALTER TABLE counterfactual_vehicle ADD COLUMN error_count INTEGER CHECK (error_count >= 0);
 
+-- The other way round than new_crashes: confirmed crashes of the baseline between others, from the
+-- checkpoint to the horizon, that do not happen with the treatment; NULL when invalid, or not known.
+ALTER TABLE counterfactual ADD COLUMN vanished_crashes INTEGER;
+
 -- The errors that the driver of a crashed car made within 5 s before contact, one row for each driver
 -- error of the scenario; none for a car that had crashed before and stood there.
 CREATE TABLE crash_driver_error (

@@ -218,10 +218,13 @@ static cp_status write_row(writer *w, const cp_counterfactual_row *row, cp_error
     cp_bind_text(s, 4, cp_outcome_text(row->outcome_olc));
     cp_bind_text(s, 5, invalid ? cp_null_status_text(row->reason) : NULL);
     cp_bind_text(s, 6, text_or_null(row->detail));
-    if (invalid)
+    if (invalid) {
         cp_bind_text(s, 7, NULL);
-    else
+        cp_bind_text(s, 20, NULL);
+    } else {
         cp_bind_integer(s, 7, (int64_t)row->new_crashes);
+        cp_bind_integer(s, 20, (int64_t)row->vanished_crashes);
+    }
     bind_treated(s, row, validity);
     cp_status status = cp_statement_run(s, error);
     for (int role = 0; status == CP_OK && row->has_crash && role < 2; role++)
@@ -248,9 +251,10 @@ static cp_status prepare(writer *w, cp_store *store, cp_error *error)
             store, what,
             "INSERT INTO counterfactual (crash_id, variant_id, outcome, outcome_olc, reason, "
             "detail, new_crashes, time_s, x_m, y_m, crash_type, closing_speed_m_s, "
-            "lateral_offset_m, angle_rad, overlap_1, validity, t_common_s, separation_s, shift_m) "
-            "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, "
-            "?18, ?19)",
+            "lateral_offset_m, angle_rad, overlap_1, validity, t_common_s, separation_s, shift_m, "
+            "vanished_crashes) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, "
+            "?14, "
+            "?15, ?16, ?17, ?18, ?19, ?20)",
             &w->row, error);
     if (status == CP_OK)
         status = cp_statement_prepare(

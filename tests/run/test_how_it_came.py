@@ -194,6 +194,7 @@ def check_functions(connection):
 
 COUNTERFACTUAL = """counterfactual:
   time_series_s: 12
+  horizon_s: 3
 """
 
 
@@ -206,6 +207,9 @@ def check_pairs(folder):
     run("run", study, "--db", db)
     run("check", db)
     connection = sqlite3.connect(db)
+    # No branch looks beyond its horizon.
+    late = connection.execute("SELECT max(treated_time_s - baseline_time_s) FROM counterfactual_pair").fetchone()[0]
+    assert late <= 3.0, late
     treated = braking = 0
     for crash, role, asked, state, sampled in connection.execute(
             "SELECT f.crash_id, f.role, coalesce(f.brake_request_m_s2, 0), f.state, (SELECT "

@@ -85,6 +85,47 @@ JOIN variant AS v ON v.id = cv.variant_id
 JOIN json_each('["' || replace(cv.validity, ',', '","') || '"]') AS r
 WHERE cv.validity <> 'inside';
 
+-- One row for each driver error that led to a crash (crash_driver_error.is_cause): whose it was, and
+-- how many led to it. None for a crash without a driver error, nor for one whose crash_vehicle.error_count
+-- is NULL: of an earlier version or of files, where it is not known.
+DROP VIEW IF EXISTS crash_cause;
+CREATE VIEW crash_cause AS
+SELECT s.name AS scenario, v.name AS variant, c.replication_id, e.crash_id, e.role, w.sumo_id,
+       w.sumo_type, w.crash_type, e.number, e.driver_error, e.towards, e.began_s, e.ended_s,
+       count(*) OVER (PARTITION BY e.crash_id) AS causes
+FROM crash_driver_error AS e
+JOIN crash_vehicle AS w ON w.crash_id = e.crash_id AND w.role = e.role
+JOIN crash AS c ON c.id = e.crash_id
+JOIN scenario AS s ON s.id = w.scenario_id
+JOIN variant AS v ON v.id = w.variant_id
+WHERE e.is_cause = 1;
+
+-- One row for each crashed car and function of its variant, by state at contact. is_treated: 1 of the
+-- treated crash of a counterfactual pair, whose crash_id is the baseline's.
+DROP VIEW IF EXISTS function_at_contact;
+CREATE VIEW function_at_contact AS
+SELECT s.name AS scenario, v.name AS variant, c.replication_id, 0 AS is_treated, f.crash_id, f.role,
+       w.sumo_id, w.crash_type, w.frontal, w.speed_m_s, f.number, f.function, f.state, f.warned_s,
+       f.requested_s, f.braking_s, f.steering_s, f.released_s, f.brake_request_m_s2,
+       f.deceleration_m_s2, f.speed_taken_off_m_s
+FROM crash_function AS f
+JOIN crash_vehicle AS w ON w.crash_id = f.crash_id AND w.role = f.role
+JOIN crash AS c ON c.id = f.crash_id
+JOIN scenario AS s ON s.id = w.scenario_id
+JOIN variant AS v ON v.id = w.variant_id
+UNION ALL
+SELECT s.name, v.name, c.replication_id, 1, f.crash_id, f.role, w.sumo_id, x.crash_type, w.frontal,
+       w.speed_m_s, f.number, f.function, f.state, f.warned_s, f.requested_s, f.braking_s,
+       f.steering_s, f.released_s, f.brake_request_m_s2, f.deceleration_m_s2, f.speed_taken_off_m_s
+FROM counterfactual_function AS f
+JOIN counterfactual_vehicle AS w
+     ON w.crash_id = f.crash_id AND w.variant_id = f.variant_id AND w.role = f.role
+JOIN counterfactual AS x ON x.crash_id = f.crash_id AND x.variant_id = f.variant_id
+JOIN crash AS c ON c.id = f.crash_id
+JOIN replication AS r ON r.id = c.replication_id
+JOIN scenario AS s ON s.id = r.scenario_id
+JOIN variant AS v ON v.id = f.variant_id;
+
 -- OLC over the frontally struck vehicles of each variant. The median counts left-censored vehicles
 -- below every value; NULL when it falls among them (then it is below the smallest value) or when
 -- there is no vehicle. share_inside_validity: of the frontal vehicles.
@@ -466,7 +507,7 @@ WITH baseline_olc AS (
 )
 SELECT s.name AS scenario, v.name AS variant, r.number AS replication, c.replication_id,
        r.scenario_id, x.variant_id, x.crash_id,
-       x.outcome, x.outcome_olc, x.reason, x.detail, x.new_crashes,
+       x.outcome, x.outcome_olc, x.reason, x.detail, x.new_crashes, x.vanished_crashes,
        c.time_s AS baseline_time_s, n.checkpoint_s,
        c.crash_type AS baseline_crash_type, c.validity AS baseline_validity,
        c.closing_speed_m_s AS baseline_closing_speed_m_s,
@@ -496,7 +537,9 @@ SELECT s.name AS scenario, v.name AS variant, r.scenario_id, x.variant_id,
        sum(x.outcome = 'mitigated') AS mitigated,
        sum(x.outcome = 'aggravated') AS aggravated,
        sum(x.outcome = 'unchanged') AS unchanged,
-       coalesce(sum(x.new_crashes), 0) AS new_crashes
+       coalesce(sum(x.new_crashes), 0) AS new_crashes,
+       -- NULL: not known (of an earlier version)
+       sum(x.vanished_crashes) AS vanished_crashes
 FROM counterfactual AS x
 JOIN crash AS c ON c.id = x.crash_id
 JOIN replication AS r ON r.id = c.replication_id

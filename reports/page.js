@@ -541,13 +541,19 @@
   const OUTCOMES = ["avoided", "mitigated", "unchanged", "aggravated", "changed_opponent", "invalid"];
   const OUTCOME_COLOUR = { avoided: "var(--v3)", mitigated: "var(--v1)", unchanged: "var(--v0)", aggravated: "var(--v2)", changed_opponent: "var(--v4)", invalid: "var(--line)" };
 
+  // Crashes of others that the treatment brought about, and those it took away.
+  function between(t) {
+    const parts = [[t.new_crashes, "new"], [t.vanished_crashes, "vanished"]].filter(p => p[0] > 0).map(p => `${integer(p[0])} ${p[1]} crash${p[0] === 1 ? "" : "es"}`);
+    return parts.length ? ` (${parts.join(" and ")} between others besides)` : "";
+  }
+
   const flowFigure = data.study.design !== "counterfactual" ? null : figure("figure-flow", "What became of the baseline’s frontal crashes",
     () => "Each baseline crash run again from a checkpoint before contact with the treatment on its two vehicles; outcomes by closing speed (±0.5 m/s), they add up to the baseline’s crashes. Shares are of the valid pairs, with 95 % intervals that allow for what replications scatter. The table has the crashes that were inside the validated range with the baseline apart.",
     function (svg, width) {
       const treatments = shownPairs(), panel = 250, left = 92, right = Math.min(290, 0.52 * width);
       treatments.forEach((t, place) => {
         const g = svg.append("g").attr("transform", `translate(0,${place * panel + 22})`), height = panel - 60, scale = (height - 50) / Math.max(1, t.crashes);
-        g.append("text").attr("x", 4).attr("y", -6).style("font-weight", 600).text(t.new_crashes > 0 ? `${t.variant} (${integer(t.new_crashes)} new crash${t.new_crashes === 1 ? "" : "es"} between others besides)` : t.variant);
+        g.append("text").attr("x", 4).attr("y", -6).style("font-weight", 600).text(t.variant + between(t));
         g.append("rect").attr("x", left - 14).attr("width", 14).attr("height", Math.max(1, t.crashes * scale)).style("fill", "var(--v0)");
         g.append("text").attr("x", left - 20).attr("y", t.crashes * scale / 2).attr("text-anchor", "end").text(`${t.crashes} crashes`);
         let from = 0, to = 0;
@@ -558,7 +564,7 @@
             .style("fill", OUTCOME_COLOUR[o]).style("opacity", 0.45).append("title").text(`${readable(o)}: ${n}`);
           g.append("rect").attr("x", x1).attr("y", to).attr("width", 10).attr("height", Math.max(1, h)).style("fill", OUTCOME_COLOUR[o]);
           const words = g.append("text").attr("x", x1 + 16).attr("y", to + Math.max(h / 2, 4) + 4);
-          words.append("tspan").style("font-weight", 600).text(`${readable(o)} ${n}`);
+          words.append("tspan").style("font-weight", 600).text(`${readable(o)} ${n}${o === "aggravated" ? ` (by OLC ${t.outcomes_by_olc[o]})` : ""}`);
           if (o !== "invalid") words.append("tspan").attr("class", "soft").text(`  ${percent(n / t.valid)}${share && share.status === "value" && width > 520 ? ` (${interval(share, percent)})` : ""}`);
           from += h;
           to += Math.max(h, 16) + 4;

@@ -8,7 +8,8 @@ SELECT v.name AS treatment, count(c.id) AS crashes,
        coalesce(sum(x.outcome = 'aggravated'), 0) AS aggravated,
        coalesce(sum(x.outcome = 'changed_opponent'), 0) AS changed_opponent,
        coalesce(sum(x.outcome = 'invalid'), 0) AS invalid,
-       coalesce(sum(x.new_crashes), 0) AS new_crashes
+       coalesce(sum(x.new_crashes), 0) AS new_crashes,
+       sum(x.vanished_crashes) AS vanished_crashes -- NULL: not known, of an earlier version
 FROM variant AS v
 LEFT JOIN counterfactual AS x ON x.variant_id = v.id
 LEFT JOIN crash AS c ON c.id = x.crash_id AND c.crash_type LIKE 'front-%'

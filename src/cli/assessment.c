@@ -22,6 +22,7 @@ typedef struct collision_view {
     const cp_listed_collision *listed;
     const char *list_path;
     const cp_fleet *fleet;
+    const cp_fcd_record *record;
     double step_length_s;
     const char *type_id[2]; /* the list's, else the record's */
     cp_sumo_type type[2];
@@ -83,6 +84,7 @@ static cp_status make_track(collision_view *view, const cp_fcd_track *track, con
         const cp_fcd_sample *sample = &track->sample[k];
         view->time_s[role][k] = sample->time_s;
         view->state[role][k] = (cp_vehicle_state){.vehicle = (uint32_t)role,
+                                                  .lane = (uint32_t)sample->lane,
                                                   .front_x_m = sample->front_m.x,
                                                   .front_y_m = sample->front_m.y,
                                                   .yaw_rad = sample->yaw_rad,
@@ -182,6 +184,9 @@ static cp_status add_crash(const collision_view *view, const cp_impact *impact,
         names.sumo_id[role] = view->listed->id[impact->vehicle[role]];
         names.sumo_type[role] = view->type_id[impact->vehicle[role]];
         names.type[role] = view->type[impact->vehicle[role]];
+        // Numbers of lanes are those of the record here.
+        if (impact->state[role].lane < view->record->lane_count)
+            names.lane[role] = view->record->lanes[impact->state[role].lane];
     }
     cp_crash_row *row = cp_result_rows_add_crash(results);
     return row != NULL ? cp_crash_record_fill(impact, &names, view->fleet, row, error)
@@ -351,6 +356,7 @@ cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_p
         collision_view view = {.listed = &list->collision[k],
                                .list_path = list_path,
                                .fleet = fleet,
+                               .record = record,
                                .step_length_s = record->step_length_s};
         for (int role = 0; status == CP_OK && role < 2; role++)
             status = make_track(&view, &record->track[k][role], types, role, error);

@@ -41,7 +41,10 @@ cp_status cp_actuation_request(cp_actuation *actuation, uint32_t vehicle, double
     car->deceleration_m_s2 =
         car->is_requested ? fmax(car->deceleration_m_s2, deceleration_m_s2) : deceleration_m_s2;
     car->is_requested = true;
-    return CP_OK;
+    if (!(deceleration_m_s2 > 0.0) || !actuation->acts)
+        return CP_OK;
+    return cp_acts_brake(actuation->acts, vehicle, cp_traffic_time_s(actuation->acts->traffic),
+                         deceleration_m_s2, error);
 }
 
 static cp_status command(cp_actuation_car *car, const cp_traffic_source *commands, uint32_t vehicle,

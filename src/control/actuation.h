@@ -2,6 +2,7 @@
 #ifndef CONTROL_ACTUATION_H
 #define CONTROL_ACTUATION_H
 
+#include "control/acts.h"
 #include "traffic/traffic.h"
 
 /* Who brakes what: functions, and drivers whose braking SUMO does not do, ask for the speed a
@@ -23,6 +24,7 @@ typedef struct cp_actuation {
     cp_actuation_car *cars; /* those that are ours or requested in this step, few of all */
     size_t count;
     size_t room;
+    cp_acts *acts; /* of the function that asks now, whose braking is noted there; NULL: nowhere */
 } cp_actuation;
 
 /* Ask for a speed (>= 0) of a vehicle on the road at the end of the coming step; deceleration_m_s2

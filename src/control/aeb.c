@@ -261,6 +261,10 @@ static cp_status step_car(aeb *self, const cp_control_context *context,
                                         : watch(self, context, motion, car, error);
     if (status != CP_OK || !car->braking.is_requesting)
         return status;
+    status = cp_acts_note(context->acts, motion->after.vehicle, CP_ACT_REQUEST,
+                          car->braking.brake.start_s - self->delay_s, error);
+    if (status != CP_OK)
+        return status;
     bool was_braking = car->braking.is_braking;
     status = cp_braking_command(&car->braking, self->traffic, motion, context->actuation, error);
     if (car->braking.is_braking) {

@@ -38,6 +38,10 @@ cp_status cp_braking_command(cp_braking *braking, const cp_traffic *traffic,
         return CP_OK;
     braking->is_braking = true;
     braking->commanded_until_s = end_s;
+    cp_status status = cp_acts_brake(actuation->acts, motion->after.vehicle, braking->brake.start_s,
+                                     cp_brake_deceleration_m_s2(&braking->brake, end_s), error);
+    if (status != CP_OK)
+        return status;
     return cp_actuation_request(actuation, motion->after.vehicle,
                                 fmax(motion->after.speed_m_s - loss_m_s, 0.0),
                                 cp_brake_deceleration_m_s2(&braking->brake, end_s), error);

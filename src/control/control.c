@@ -18,6 +18,7 @@ typedef struct active_control {
     cp_control_settings settings;
     cp_control_context context;
     cp_equipment equipment;
+    cp_acts acts; /* of a function */
     void *state;
 } active_control;
 
@@ -29,6 +30,7 @@ struct cp_controls {
     size_t count; /* created so far */
     const cp_traffic *traffic;
     cp_actuation actuation;
+    cp_error_log errors;
     char *only[2]; /* of a treatment: the ids of its two vehicles */
     cp_ignored_foes *ignored;
     cp_road_view *view;
@@ -80,6 +82,7 @@ static cp_status create_one(cp_controls *controls, active_control *active,
         .only = is_function && controls->only[0] ? (const char *const *)controls->only : NULL,
         .only_count = 2,
     };
+    active->acts = cp_acts_create(controls->traffic);
     active->context = (cp_control_context){
         .traffic = controls->traffic,
         .ignored = controls->ignored,
@@ -89,6 +92,7 @@ static cp_status create_one(cp_controls *controls, active_control *active,
         .parameter = active->settings.parameter,
         .equipment = &active->equipment,
         .actuation = &controls->actuation,
+        .acts = is_function ? &active->acts : NULL,
     };
     return settings->type->create(&active->context, &active->state, error);
 }
@@ -151,8 +155,10 @@ void cp_controls_destroy(cp_controls *controls)
     for (size_t k = 0; k < controls->count; k++) {
         controls->active[k].settings.type->destroy(controls->active[k].state);
         cp_equipment_destroy(&controls->active[k].equipment);
+        cp_acts_destroy(&controls->active[k].acts);
     }
     cp_actuation_destroy(&controls->actuation);
+    cp_error_log_destroy(&controls->errors);
     free(controls->only[0]);
     free(controls->only[1]);
     cp_ignored_foes_destroy(controls->ignored);
@@ -160,18 +166,72 @@ void cp_controls_destroy(cp_controls *controls)
     free(controls);
 }
 
+/* Errors of one control being noted. */
+typedef struct noting {
+    cp_controls *controls;
+    size_t control;
+} noting;
+
+static cp_status note_error(void *context, uint32_t vehicle, uint32_t other, cp_error *error)
+{
+    const noting *now = context;
+    const cp_traffic *traffic = now->controls->traffic;
+    return cp_error_log_note(&now->controls->errors, now->control, vehicle, other,
+                             cp_traffic_time_s(traffic), cp_traffic_step_length_s(traffic), error);
+}
+
+// Everybody whom a control makes err now, for controls that keep no list of them.
+static cp_status ask_everybody(const cp_controls *controls, const active_control *active,
+                               noting *now, cp_error *error)
+{
+    size_t count;
+    const cp_vehicle_motion *motions = cp_traffic_motions(controls->traffic, &count);
+    cp_status status = CP_OK;
+    for (size_t k = 0; k < count && status == CP_OK; k++)
+        if (active->settings.type->is_at_fault(active->state, motions[k].after.vehicle))
+            status = note_error(now, motions[k].after.vehicle, CP_EVERYBODY, error);
+    return status;
+}
+
+// The errors at work after the step that has just been made.
+static cp_status note_errors(cp_controls *controls, cp_error *error)
+{
+    cp_status status =
+        cp_error_log_tidy(&controls->errors, cp_traffic_time_s(controls->traffic), error);
+    for (size_t k = 0; k < controls->count && status == CP_OK; k++) {
+        const active_control *active = &controls->active[k];
+        const cp_control_type *type = active->settings.type;
+        noting now = {controls, k};
+        if (type->kind == CP_CONTROL_DRIVER_ERROR && type->visit_errors)
+            status = type->visit_errors(active->state, note_error, &now, error);
+        else if (type->kind == CP_CONTROL_DRIVER_ERROR && type->is_at_fault)
+            status = ask_everybody(controls, active, &now, error);
+    }
+    return status;
+}
+
+static cp_status step_one(cp_controls *controls, active_control *active, cp_error *error)
+{
+    const cp_control_type *type = active->settings.type;
+    bool is_function = type->kind == CP_CONTROL_FUNCTION;
+    cp_status status = is_function ? cp_acts_step(&active->acts, error) : CP_OK;
+    controls->actuation.acts = active->context.acts;
+    if (status == CP_OK)
+        status = type->step(active->state, &active->context, error);
+    if (status != CP_OK)
+        cp_error_prefix(error, "%s: ", type->name);
+    return status;
+}
+
 cp_status cp_controls_step(cp_controls *controls, cp_error *error)
 {
-    for (size_t k = 0; k < controls->count; k++) {
-        active_control *active = &controls->active[k];
-        const cp_control_type *type = active->settings.type;
-        cp_status status = type->step(active->state, &active->context, error);
-        if (status != CP_OK) {
-            cp_error_prefix(error, "%s: ", type->name);
-            return status;
-        }
-    }
-    cp_status status = cp_ignored_foes_send(controls->ignored, controls->traffic, error);
+    cp_status status = CP_OK;
+    for (size_t k = 0; k < controls->count && status == CP_OK; k++)
+        status = step_one(controls, &controls->active[k], error);
+    if (status == CP_OK)
+        status = note_errors(controls, error);
+    if (status == CP_OK)
+        status = cp_ignored_foes_send(controls->ignored, controls->traffic, error);
     if (status != CP_OK)
         return status;
     return cp_actuation_apply(&controls->actuation, controls->traffic, error);
@@ -226,6 +286,81 @@ double cp_controls_error_since_s(const cp_controls *controls, uint32_t vehicle, 
     }
     return since_s;
 }
+
+// ---- how a crash came about ----------------------------------------------------------------
+
+static size_t count_kind(const cp_controls *controls, cp_control_kind kind)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < controls->count; k++)
+        count += controls->active[k].settings.type->kind == kind;
+    return count;
+}
+
+size_t cp_controls_driver_error_count(const cp_controls *controls)
+{
+    return count_kind(controls, CP_CONTROL_DRIVER_ERROR);
+}
+
+size_t cp_controls_function_count(const cp_controls *controls)
+{
+    return count_kind(controls, CP_CONTROL_FUNCTION);
+}
+
+// Index of the number-th control of a kind.
+static size_t index_of(const cp_controls *controls, cp_control_kind kind, size_t number)
+{
+    size_t k = 0;
+    while (controls->active[k].settings.type->kind != kind || number-- > 0)
+        k++;
+    return k;
+}
+
+bool cp_controls_error_at(const cp_controls *controls, size_t number, uint32_t vehicle,
+                          uint32_t opponent, double instant_s, cp_error_at *at)
+{
+    size_t control = index_of(controls, CP_CONTROL_DRIVER_ERROR, number);
+    const cp_logged_error *found = NULL;
+    for (size_t k = 0; k < controls->errors.count; k++) {
+        const cp_logged_error *entry = &controls->errors.errors[k];
+        if (entry->control != control || entry->vehicle != vehicle ||
+            instant_s - entry->until_s > CP_ERROR_MEMORY_S)
+            continue;
+        // Towards him or everybody before towards another, later before earlier.
+        bool is_his = entry->other == CP_EVERYBODY || entry->other == opponent;
+        bool was_his = found && (found->other == CP_EVERYBODY || found->other == opponent);
+        if (!found || is_his > was_his ||
+            (is_his == was_his &&
+             (entry->until_s > found->until_s ||
+              (entry->until_s == found->until_s && entry->since_s < found->since_s))))
+            found = entry;
+    }
+    if (!found)
+        return false;
+    *at = (cp_error_at){
+        .name = controls->active[control].settings.type->name,
+        .towards = found->other == CP_EVERYBODY ? CP_TOWARDS_EVERYBODY
+                   : found->other == opponent   ? CP_TOWARDS_OPPONENT
+                                                : CP_TOWARDS_ANOTHER,
+        .began_s = fmax(instant_s - found->since_s, 0.0),
+        .ended_s = fmax(instant_s - found->until_s, 0.0),
+    };
+    at->is_cause = at->towards != CP_TOWARDS_ANOTHER && at->ended_s <= CP_CAUSE_WINDOW_S;
+    return true;
+}
+
+cp_status cp_controls_function_at(cp_controls *controls, size_t number, uint32_t vehicle,
+                                  double instant_s, double speed_m_s, cp_function_at *at,
+                                  cp_error *error)
+{
+    active_control *active = &controls->active[index_of(controls, CP_CONTROL_FUNCTION, number)];
+    *at = (cp_function_at){.name = active->settings.type->name,
+                           .act = cp_acts_at(&active->acts, vehicle, instant_s, speed_m_s)};
+    return cp_equipment_has(&active->equipment, controls->traffic, vehicle, &at->is_equipped,
+                            error);
+}
+
+// ---- counters ------------------------------------------------------------------------------
 
 // Counters of one control under "name.counter"; false when memory is gone.
 static bool add_counters(json_t *object, const active_control *active)

@@ -2,8 +2,10 @@
 #ifndef CONTROL_CONTROL_H
 #define CONTROL_CONTROL_H
 
+#include "control/acts.h"
 #include "control/actuation.h"
 #include "control/equipment.h"
+#include "control/error_log.h"
 #include "core/rng.h"
 #include "traffic/traffic.h"
 
@@ -39,13 +41,18 @@ typedef struct cp_control_parameter {
 typedef struct cp_control_context {
     const cp_traffic *traffic;
     cp_rng_key seed_key;
-    const double *parameter;            /* by index of the type's parameter table */
-    cp_equipment *equipment;            /* of functions: who has it */
-    cp_actuation *actuation;            /* of functions: where to ask for braking */
-    struct cp_ignored_foes *ignored;    /* shared by all (driver_error/ignored_foes.h) */
-    struct cp_road_view *view;          /* likewise (road_view.h) */
+    const double *parameter;         /* by index of the type's parameter table */
+    cp_equipment *equipment;         /* of functions: who has it */
+    cp_actuation *actuation;         /* of functions: where to ask for braking */
+    cp_acts *acts;                   /* of functions: where to note what else they do; else NULL */
+    struct cp_ignored_foes *ignored; /* shared by all (driver_error/ignored_foes.h) */
+    struct cp_road_view *view;       /* likewise (road_view.h) */
     const struct cp_controls *controls; /* it is one of these: for cp_controls_has_cause */
 } cp_control_context;
+
+/* Called for an error at work: who errs, and towards whom (CP_EVERYBODY: whoever it is). */
+typedef cp_status (*cp_error_visit)(void *context, uint32_t vehicle, uint32_t other,
+                                    cp_error *error);
 
 /* A kind of control. create/step/destroy handle its mutable state of one replication. */
 typedef struct cp_control_type {
@@ -67,6 +74,10 @@ typedef struct cp_control_type {
      * erred towards other without a break; INFINITY when it does not. May be NULL: the error is the
      * vehicle's alone, as long as is_at_fault says so. */
     double (*error_since_s)(const void *state, uint32_t vehicle, uint32_t other);
+    /* Visit all errors at work after the last step, each once; ends with the first failure. NULL:
+     * everybody on the road is asked by is_at_fault. */
+    cp_status (*visit_errors)(const void *state, cp_error_visit visit, void *context,
+                              cp_error *error);
     /* What it did, e.g. {"activations": 12}; names static. May be NULL. */
     size_t (*counters)(const void *state, const char **names, double *values, size_t room);
     void (*destroy)(void *state);
@@ -116,6 +127,49 @@ double cp_controls_error_since_s(const cp_controls *controls, uint32_t vehicle, 
 /* Whether a function that acts on own towards target has a cause that the study made: one of the
  * two errs, or the target is a wreck that stays on the road. */
 bool cp_controls_has_cause(const cp_controls *controls, uint32_t own, uint32_t target);
+
+/* ---- how a crash came about: at an instant within the last step --------------------------------
+ */
+
+#define CP_CAUSE_WINDOW_S                                                                          \
+    3.0 /* an error that ended this long before a crash may have led to it                         \
+         */
+
+typedef enum cp_error_towards {
+    CP_TOWARDS_EVERYBODY,
+    CP_TOWARDS_OPPONENT,
+    CP_TOWARDS_ANOTHER
+} cp_error_towards;
+
+/* One driver error of one driver. Times are before the instant. */
+typedef struct cp_error_at {
+    const char *name; /* of the control; static */
+    cp_error_towards towards;
+    double began_s; /* the last time it began, to within a step; >= ended_s */
+    double ended_s; /* 0 ... CP_ERROR_MEMORY_S; 0: at work */
+    bool is_cause;  /* towards everybody or the opponent, within CP_CAUSE_WINDOW_S */
+} cp_error_at;
+
+/* One function in one car. */
+typedef struct cp_function_at {
+    const char *name; /* of the control; static */
+    bool is_equipped;
+    cp_act_at act;
+} cp_function_at;
+
+size_t cp_controls_driver_error_count(const cp_controls *controls);
+size_t cp_controls_function_count(const cp_controls *controls);
+/* Whether driver error number 0, 1, ... was at work on a vehicle within CP_ERROR_MEMORY_S before
+ * the instant, and how. An error towards the opponent comes before one towards another. */
+bool cp_controls_error_at(const cp_controls *controls, size_t number, uint32_t vehicle,
+                          uint32_t opponent, double instant_s, cp_error_at *at);
+/* What function number 0, 1, ... did to a vehicle on the road, whose speed at the instant is
+ * speed_m_s. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_controls_function_at(cp_controls *controls, size_t number,
+                                                uint32_t vehicle, double instant_s,
+                                                double speed_m_s, cp_function_at *at,
+                                                cp_error *error);
+
 /* Deceleration that the functions ask of a vehicle in the coming step, m/s^2; 0 for none. */
 double cp_controls_brake_request_m_s2(const cp_controls *controls, uint32_t vehicle);
 /* What has been counted so far does not count: the warm-up is over. */

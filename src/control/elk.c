@@ -204,6 +204,12 @@ static cp_status steer(elk *self, const cp_control_context *context,
     return cp_lateral_overlay_steer(overlays, vehicle, mean_slope_1, end_slope_1, error);
 }
 
+// Instant of the request.
+static double requested_s(const cp_control_context *context, const elk_car *car)
+{
+    return car->steer_from_s - context->parameter[LATENCY_S] - context->parameter[DEAD_TIME_S];
+}
+
 static cp_status step_car(elk *self, const cp_control_context *context,
                           const cp_vehicle_motion *motion, elk_car *car, cp_error *error)
 {
@@ -218,7 +224,12 @@ static cp_status step_car(elk *self, const cp_control_context *context,
             status = watch(self, context, motion, overlay, car, error);
     }
     double end_s = cp_traffic_time_s(self->traffic) + cp_traffic_step_length_s(self->traffic);
-    if (status == CP_OK && car->phase != WATCHING && car->steer_from_s < end_s)
+    bool is_steering = car->phase != WATCHING && car->steer_from_s < end_s;
+    if (status == CP_OK && car->phase != WATCHING)
+        status = cp_acts_note(context->acts, motion->after.vehicle,
+                              is_steering ? CP_ACT_STEERING : CP_ACT_REQUEST,
+                              is_steering ? car->steer_from_s : requested_s(context, car), error);
+    if (status == CP_OK && is_steering)
         status = steer(self, context, motion, car, error);
     return status;
 }

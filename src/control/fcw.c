@@ -94,6 +94,7 @@ static const cp_control_parameter PARAMETERS[] = {
 typedef struct fcw_car {
     cp_braking braking;
     bool is_warned; /* from the warning until the danger has passed */
+    double warned_s;
     uint64_t warnings;
     uint32_t target; /* of the last warning, */
     double until_s;  /* looked at until then, SUMO clock */
@@ -179,11 +180,12 @@ static cp_status watch(fcw *self, const cp_control_context *context,
     car->is_warned = true;
     car->target = threat.vehicle;
     car->until_s = cp_traffic_time_s(self->traffic) + threat.ttc_s + BEARS_OUT_S;
+    car->warned_s = threat.instant_s + parameter[LATENCY_S];
     car->braking = (cp_braking){0};
     if (!heeds)
         return CP_OK;
     cp_brake brake = self->brake;
-    brake.start_s = threat.instant_s + parameter[LATENCY_S] + reaction_s;
+    brake.start_s = car->warned_s + reaction_s;
     cp_braking_begin(&car->braking, &brake);
     return CP_OK;
 }
@@ -243,6 +245,9 @@ static cp_status step_car(fcw *self, const cp_control_context *context,
                                                          context->parameter[HOLD_S])
                                    : !is_calm;
     }
+    if (status == CP_OK && car->is_warned)
+        status = cp_acts_note(context->acts, motion->after.vehicle, CP_ACT_WARNING, car->warned_s,
+                              error);
     if (status != CP_OK || !car->is_warned || !car->braking.is_requesting)
         return status;
     status = cp_braking_command(&car->braking, self->traffic, motion, context->actuation, error);

@@ -63,7 +63,9 @@ static cp_status limit(isa *self, const cp_control_context *context, uint32_t ve
     if (status != CP_OK || factor_1 <= highest_1)
         return status;
     self->limited++;
-    return commands->set_speed_factor(vehicle, highest_1, error);
+    status = cp_acts_note(context->acts, vehicle, CP_ACT_LIMITING, cp_traffic_time_s(self->traffic),
+                          error);
+    return status == CP_OK ? commands->set_speed_factor(vehicle, highest_1, error) : status;
 }
 
 static cp_status step(void *state, const cp_control_context *context, cp_error *error)

@@ -71,6 +71,24 @@ cp_status cp_fcd_track_append(cp_fcd_track *track, cp_fcd_sample sample, cp_erro
     return CP_OK;
 }
 
+// Number of a lane by its name.
+static cp_status number_lane(cp_fcd_record *record, const char *name, size_t *number,
+                             cp_error *error)
+{
+    for (*number = 0; *number < record->lane_count; ++*number)
+        if (strcmp(record->lanes[*number], name) == 0)
+            return CP_OK;
+    char **larger = realloc(record->lanes, (record->lane_count + 1) * sizeof *larger);
+    if (larger == NULL)
+        return cp_fail_memory(error, "lanes");
+    record->lanes = larger;
+    record->lanes[record->lane_count] = strdup(name);
+    if (record->lanes[record->lane_count] == NULL)
+        return cp_fail_memory(error, "lanes");
+    record->lane_count++;
+    return CP_OK;
+}
+
 static cp_status take_step(reading *self, const cp_xml_element *element, cp_error *error)
 {
     double before_s = self->time_s;
@@ -124,7 +142,7 @@ static cp_status take_vehicle(reading *self, const cp_xml_element *element, cp_e
 {
     const char *id = NULL;
     double speed_m_s = 0.0, angle_deg = 0.0;
-    cp_fcd_sample sample = {.time_s = self->time_s};
+    cp_fcd_sample sample = {.time_s = self->time_s, .lane = CP_FCD_NO_LANE};
     if (self->steps == 0)
         return cp_fail(error, CP_BAD_INPUT, "%s:%zu: <vehicle> must stand inside a <timestep>",
                        element->path, element->line);
@@ -163,6 +181,9 @@ static cp_status take_vehicle(reading *self, const cp_xml_element *element, cp_e
         sample.lane_position_m = NAN;
         if (status == CP_OK && cp_xml_attribute(element, "pos") != NULL)
             status = cp_xml_number(element, "pos", -1e9, 1e9, &sample.lane_position_m, error);
+        const char *lane = cp_xml_attribute(element, "lane");
+        if (status == CP_OK && lane != NULL && lane[0] != '\0')
+            status = number_lane(self->record, lane, &sample.lane, error);
         sample.yaw_rad = yaw_of(angle_deg);
         sample.speed_m_s = speed_m_s;
         cp_fcd_track *track = &self->record->track[found->collision][found->role];
@@ -289,5 +310,8 @@ void cp_fcd_record_destroy(cp_fcd_record *record)
         for (int role = 0; role < 2; role++)
             cp_fcd_track_destroy(&record->track[k][role]);
     free(record->track);
+    for (size_t k = 0; k < record->lane_count; k++)
+        free(record->lanes[k]);
+    free(record->lanes);
     *record = (cp_fcd_record){0};
 }

@@ -6,6 +6,7 @@
 #include "exchange/sumo_collisions.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 /* The ways of colliding vehicles out of a SUMO run's --fcd-output. SUMO's frame becomes ours here:
  * headings counter-clockwise from +x, rad. */
@@ -16,7 +17,10 @@ typedef struct cp_fcd_sample {
     double yaw_rad;
     double speed_m_s;
     double lane_position_m; /* NAN where the file does not tell */
+    size_t lane;            /* index in lanes of the record; CP_FCD_NO_LANE likewise */
 } cp_fcd_sample;
+
+#define CP_FCD_NO_LANE SIZE_MAX
 
 /* One vehicle around one collision, in order of time. */
 typedef struct cp_fcd_track {
@@ -28,6 +32,8 @@ typedef struct cp_fcd_track {
 typedef struct cp_fcd_record {
     cp_fcd_track (*track)[2]; /* one pair of tracks for each collision of the list */
     size_t collision_count;
+    char **lanes; /* names of SUMO's lanes, each once */
+    size_t lane_count;
     double step_length_s; /* between the time steps of the file */
     double simulated_s;   /* from the first to the last */
     double vehicle_km;    /* driven by all vehicles of the file, by their speeds; 0 without one */

@@ -258,6 +258,9 @@ static void write_pairs(FILE *out, const cp_study_data *data, const cp_compariso
     if (c->new_crashes > 0.0)
         fprintf(out, ", and %g new crash%s between others", c->new_crashes,
                 plural((size_t)c->new_crashes));
+    if (c->vanished_crashes > 0.0)
+        fprintf(out, ", and %g crash%s between others vanished", c->vanished_crashes,
+                plural((size_t)c->vanished_crashes));
     if (!isnan(olc->hodges_lehmann)) {
         char p[CP_ESTIMATE_TEXT_SIZE];
         fprintf(out,

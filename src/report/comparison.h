@@ -142,6 +142,7 @@ typedef struct cp_counterfactual_figures {
         share[CP_OUTCOME_NO_OLC]; /* of the valid pairs, by replications; [invalid] unused */
     size_t reason[CP_NULL_NOT_REPRODUCED + 1]; /* why invalid */
     double new_crashes;                        /* between others, over the valid pairs */
+    double vanished_crashes;                   /* likewise; NAN: not known */
     cp_paired olc_g[CP_PAIRED_COUNT];
     cp_paired closing_speed_m_s[CP_PAIRED_COUNT];
     cp_model_part olc_model[CP_PAIRED_COUNT]; /* of Hodges-Lehmann's change; sets 0 without */

@@ -296,6 +296,7 @@ static json_t *counterfactual_json(const cp_study_data *data, const cp_counterfa
                   by_olc, "invalid_reasons", reasons, "new_crashes", c->new_crashes, "olc_change_g",
                   olc, "closing_speed_change_m_s", speed, "baseline_inside", of_inside,
                   "injury_benefit", benefits_json(data, c->benefit));
+    json_object_set_new(object, "vanished_crashes", cp_number_json(c->vanished_crashes));
     if (json_object_size(model) > 0)
         json_object_set_new(object, "model_uncertainty", json_pack("{s:O}", "olc_change_g", model));
     json_decref(model);

@@ -74,9 +74,10 @@ static void count_outcomes(const pairs *p, cp_counterfactual_figures *figures)
         figures->outcome[pair->outcome]++;
         figures->outcome_olc[pair->outcome_olc]++;
         figures->valid += valid(pair);
-        if (valid(pair))
+        if (valid(pair)) {
             figures->new_crashes += pair->new_crashes;
-        else
+            figures->vanished_crashes += pair->vanished_crashes;
+        } else
             figures->reason[pair->reason]++;
         if (!inside(p, pair))
             continue;

@@ -484,6 +484,10 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
     for (int o = 0; o < CP_OUTCOME_NO_OLC; o++)
         add(&w, named(name, "outcome_%s", cp_outcome_text((cp_outcome)o)),
             named(label, "  %s", cp_outcome_text((cp_outcome)o)), 0, counted(figures->outcome[o]));
+    for (int o = 0; o <= CP_OUTCOME_NO_OLC; o++)
+        add(&w, named(name, "outcome_by_olc_%s", cp_outcome_text((cp_outcome)o)),
+            o == CP_OUTCOME_AGGRAVATED ? "  aggravated by OLC" : NULL, 0,
+            counted(figures->outcome_olc[o]));
     for (int o = CP_OUTCOME_CHANGED_OPPONENT; o < CP_OUTCOME_NO_OLC; o++) {
         double share = figures->valid ? (double)figures->outcome[o] / (double)figures->valid : NAN;
         add_interval(&w, named(name, "share_%s_1", cp_outcome_text((cp_outcome)o)),
@@ -491,17 +495,15 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
                      cp_estimate_of(share), "binomial widened", figures->share[o]);
     }
     add_pairs_inside(&w, figures);
-    for (int o = 0; o <= CP_OUTCOME_NO_OLC; o++)
-        add(&w, named(name, "outcome_by_olc_%s", cp_outcome_text((cp_outcome)o)),
-            o == CP_OUTCOME_AGGRAVATED ? "  aggravated by OLC" : NULL, 0,
-            counted(figures->outcome_olc[o]));
     for (int r = CP_NULL_REPRODUCED + 1; r <= CP_NULL_NOT_REPRODUCED; r++)
         add(&w, named(name, "invalid_%s", cp_null_status_text((cp_null_status)r)), NULL, 0,
             counted(figures->reason[r]));
-    add(&w, "new_crashes", "new crashes between others (vanished ones not counted)", 0,
-        cp_estimate_of(figures->new_crashes));
-    static const char *const OLC[] = {"OLC, g, all valid pairs (avoided = 0 g)",
-                                      "OLC, g, conditional on crashing"};
+    add(&w, "new_crashes", "new crashes between others", 0, cp_estimate_of(figures->new_crashes));
+    add(&w, "vanished_crashes", "crashes between others that vanish", 0,
+        cp_estimate_of(figures->vanished_crashes));
+    // Of a crash the larger OLC of its frontally struck vehicles.
+    static const char *const OLC[] = {"larger OLC of a crash, g, all valid pairs (avoided = 0 g)",
+                                      "larger OLC of a crash, g, conditional on crashing"};
     static const char *const SPEED[] = {"closing speed, km/h, all valid pairs (avoided = 0)",
                                         "closing speed, km/h, conditional on crashing"};
     for (int which = 0; which < CP_PAIRED_COUNT; which++) {

@@ -229,6 +229,7 @@ static cp_status read_pair(void *context, const cp_row *row, cp_error *error)
             (cp_outcome)index_of(row->cell[3].text, OUTCOME, sizeof OUTCOME / sizeof *OUTCOME),
         .reason = index_of(row->cell[4].text, REASON, sizeof REASON / sizeof *REASON),
         .new_crashes = row->cell[5].real,
+        .vanished_crashes = row->cell[12 + 2 * CP_PREDICTOR_COUNT].real,
         .olc_g = {row->cell[6].real, row->cell[7].real},
         .closing_speed_m_s = {row->cell[8].real, row->cell[9].real},
         .treated_inside = {row->cell[10].integer != 0, row->cell[11].integer != 0},
@@ -274,7 +275,8 @@ static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error
          " p.baseline_closing_speed_m_s, CASE p.outcome WHEN 'avoided' THEN 0.0 ELSE"
          " p.treated_closing_speed_m_s END, a.validity = 'inside', b.validity = "
          "'inside', " PREDICTORS_OF("a", "p.treated_closing_speed_m_s") ", " PREDICTORS_OF(
-             "b", "p.treated_closing_speed_m_s") " FROM counterfactual_pair AS p JOIN c ON c.id = "
+             "b", "p.treated_closing_speed_m_s") ", p.vanished_crashes FROM counterfactual_pair AS "
+                                                 "p JOIN c ON c.id = "
                                                  "p.crash_id"
                                                  " JOIN v ON v.id = p.variant_id AND v.sweep = ''"
                                                  " LEFT JOIN counterfactual_vehicle AS a ON "

@@ -103,6 +103,7 @@ typedef struct cp_study_pair {
     cp_outcome outcome_olc;
     size_t reason; /* cp_null_status; CP_NULL_REPRODUCED unless invalid */
     double new_crashes;
+    double vanished_crashes; /* NAN: not known */
     double olc_g[2]; /* baseline, treated: the larger of the frontally struck vehicles, 0 when left-
                         censored or avoided; NAN without one */
     double closing_speed_m_s[2];             /* treated: 0 when avoided, NAN when invalid */

@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <string.h>
 
-/* First bytes of an answer; samples follow, then texts: ids and types of the crash, then for every
- * other crash its time and two ids. */
+/* First bytes of an answer; driver errors and functions of the crash follow, samples, then texts:
+ * ids, types and lanes of the crash, then for every other crash its time and two ids. */
 typedef struct answer_head {
     cp_found_contact found;
     cp_sumo_type type[2];
@@ -26,6 +26,14 @@ static bool send_text(int to, const char *text)
     return cp_branch_write(to, text, strlen(text) + 1);
 }
 
+static bool send_participants(int to, const cp_participant_rows *rows)
+{
+    return (rows->error_count == 0 ||
+            cp_branch_write(to, rows->error, rows->error_count * sizeof *rows->error)) &&
+           (rows->function_count == 0 ||
+            cp_branch_write(to, rows->function, rows->function_count * sizeof *rows->function));
+}
+
 bool cp_branch_answer_send(int to, const cp_found_contact *first, const cp_sample_row *sample,
                            size_t sample_count, const cp_found_contact *const *others,
                            size_t other_count)
@@ -41,11 +49,14 @@ bool cp_branch_answer_send(int to, const cp_found_contact *first, const cp_sampl
             return false;
     }
     bool sent = cp_branch_write(to, &head, sizeof head);
+    if (sent && first != NULL)
+        sent = send_participants(to, &first->participants);
     if (sent && sample_count > 0)
         sent = cp_branch_write(to, sample, sample_count * sizeof *sample);
     for (int role = 0; sent && first != NULL && role < 2; role++)
         sent = send_text(to, sumo_bridge_vehicle_id(first->impact.vehicle[role])) &&
-               send_text(to, sumo_bridge_type_id(first->impact.state[role].type));
+               send_text(to, sumo_bridge_type_id(first->impact.state[role].type)) &&
+               send_text(to, sumo_bridge_lane_id(first->impact.state[role].lane));
     for (size_t k = 0; sent && k < other_count; k++) {
         const cp_impact *impact = &others[k]->impact;
         sent = cp_branch_write(to, &impact->time_s, sizeof impact->time_s) &&
@@ -66,6 +77,20 @@ static const char *take_text(const char **at, const char *end)
     return text;
 }
 
+// Driver errors and functions at *at and past them; false when they do not end before end.
+static bool take_participants(const char **at, const char *end, cp_participant_rows *rows)
+{
+    if ((size_t)(end - *at) / sizeof *rows->error < rows->error_count)
+        return false;
+    rows->error = (cp_driver_error_row *)(void *)*at;
+    *at += rows->error_count * sizeof *rows->error;
+    if ((size_t)(end - *at) / sizeof *rows->function < rows->function_count)
+        return false;
+    rows->function = (cp_function_row *)(void *)*at;
+    *at += rows->function_count * sizeof *rows->function;
+    return true;
+}
+
 bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *answer)
 {
     const char *at = bytes, *end = at + size;
@@ -74,6 +99,8 @@ bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *ans
         return false;
     memcpy(&head, at, sizeof head);
     at += sizeof head;
+    if (!take_participants(&at, end, &head.found.participants))
+        return false;
     if ((size_t)(end - at) / sizeof(cp_sample_row) < head.sample_count)
         return false;
     *answer = (cp_branch_answer){.has_crash = head.has_crash,
@@ -86,7 +113,8 @@ bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *ans
     for (int role = 0; head.has_crash && role < 2; role++) {
         answer->ids[role] = take_text(&at, end);
         answer->types[role] = take_text(&at, end);
-        if (answer->ids[role] == NULL || answer->types[role] == NULL)
+        answer->lanes[role] = take_text(&at, end);
+        if (answer->ids[role] == NULL || answer->types[role] == NULL || answer->lanes[role] == NULL)
             return false;
     }
     answer->others = at;

@@ -39,7 +39,10 @@ typedef struct cp_branch_answer {
     cp_found_contact found; /* its first; by the branch's numbers */
     const char *ids[2];     /* by role of found */
     const char *types[2];
+    const char *lanes[2];
     cp_sumo_type type[2];
+    bool is_swapped; /* the reader changed roles: those of found.participants are as they were sent
+                      */
     const cp_sample_row *sample;
     size_t sample_count;
     size_t other_count;
@@ -52,8 +55,8 @@ bool cp_branch_answer_send(int to, const cp_found_contact *first, const cp_sampl
                            size_t sample_count, const cp_found_contact *const *others,
                            size_t other_count);
 
-/* Read one; texts and samples point into bytes, which are aligned to 16. False for bytes that are
- * no whole answer. */
+/* Read one; texts, samples and found.participants point into bytes, which are aligned to 16. False
+ * for bytes that are no whole answer. */
 bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *answer);
 
 /* The next of the other crashes; *at: NULL at first. */

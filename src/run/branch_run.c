@@ -111,7 +111,7 @@ static cp_status run_steps(branch_run *run, bool is_null, cp_error *error)
     cp_simulation *simulation = run->world->simulation;
     double contact_s = run->request->contact_s;
     double window_s = run->world->study->counterfactual.time_series_s;
-    double end_s = contact_s + (is_null ? 1.0 : CP_COUNTERFACTUAL_HORIZON_S);
+    double end_s = contact_s + (is_null ? 1.0 : run->world->study->counterfactual.horizon_s);
     cp_status status = CP_OK;
     while (status == CP_OK && cp_traffic_time_s(simulation->traffic) < end_s &&
            !(is_null && run->first_index > 0)) {
@@ -128,7 +128,7 @@ static cp_status run_steps(branch_run *run, bool is_null, cp_error *error)
 static bool send_answer(const branch_run *run, int to)
 {
     const cp_simulation *simulation = run->world->simulation;
-    double horizon_s = run->request->contact_s + CP_COUNTERFACTUAL_HORIZON_S;
+    double horizon_s = run->request->contact_s + run->world->study->counterfactual.horizon_s;
     const cp_found_contact *first =
         run->first_index > 0 ? &simulation->found[run->first_index - 1] : NULL;
     if (first != NULL && first->impact.time_s > horizon_s)

@@ -7,9 +7,6 @@
 /* What a branch does in its process: a crash of the baseline gone through again from the checkpoint
  * that the process is a copy of, with or without a treatment on its two vehicles. */
 
-/* Longer than the baseline's contact that it goes on, s. */
-#define CP_COUNTERFACTUAL_HORIZON_S 10.0
-
 /* Where it happens; all borrowed. */
 typedef struct cp_branch_world {
     const cp_study *study;

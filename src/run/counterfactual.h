@@ -11,7 +11,7 @@
  * functions on its two vehicles. The checkpoint lies at least CP_COUNTERFACTUAL_LEAD_S before
  * contact, and at least 1 s before the driver error began; the onset is known as the last
  * checkpoint at which the driver was not yet at fault. Branches run until
- * CP_COUNTERFACTUAL_HORIZON_S after the baseline's contact (branch_run.h). */
+ * counterfactual.horizon_s of the study after the baseline's contact. */
 #define CP_COUNTERFACTUAL_LEAD_S 4.0
 #define CP_COUNTERFACTUAL_BEFORE_ERROR_S 1.0
 

@@ -57,6 +57,26 @@ static unsigned outside_of(const cp_stand_in cars[2], const cp_crash_configurati
     return outside;
 }
 
+// Lane, edge and junction out of SUMO's name of a lane: EDGE_LANE, in a junction
+// :JUNCTION_LINK_LANE.
+static cp_status fill_place(const char *lane, cp_crash_vehicle_row *vehicle, cp_error *error)
+{
+    if (lane == NULL || lane[0] == '\0')
+        return CP_OK;
+    const char *edge_end = strrchr(lane, '_');
+    size_t length = edge_end != NULL ? (size_t)(edge_end - lane) : strlen(lane);
+    vehicle->lane = strdup(lane);
+    vehicle->edge = strndup(lane, length);
+    if (vehicle->lane == NULL || vehicle->edge == NULL)
+        return cp_fail_memory(error, "crash");
+    if (lane[0] != ':')
+        return CP_OK;
+    const char *junction_end = strrchr(vehicle->edge, '_');
+    length = junction_end != NULL ? (size_t)(junction_end - vehicle->edge) : length;
+    vehicle->junction = strndup(vehicle->edge + 1, length - 1);
+    return vehicle->junction != NULL ? CP_OK : cp_fail_memory(error, "crash");
+}
+
 static cp_status fill_vehicle(const cp_crash_facts *facts, const cp_impact_names *names,
                               const cp_stand_in cars[2],
                               const cp_crash_configuration *configuration, int role,
@@ -73,6 +93,7 @@ static cp_status fill_vehicle(const cp_crash_facts *facts, const cp_impact_names
     vehicle->chosen_by = choice->chosen_by;
     snprintf(vehicle->no_model_reason, sizeof vehicle->no_model_reason, "%s", choice->reason);
     vehicle->at_fault = names->at_fault[role];
+    vehicle->mass_kg = choice->model != NULL ? cars[role].model.mass_kg : NAN;
     vehicle->body = configuration->vehicle[role];
     vehicle->speed_m_s = row->description.speed_m_s[role];
     vehicle->length_m = facts->length_m[role];
@@ -84,7 +105,7 @@ static cp_status fill_vehicle(const cp_crash_facts *facts, const cp_impact_names
         vehicle->outside |= CP_OUTSIDE_DAMAGED;
     vehicle->severity = NO_SEVERITY;
     vehicle->crush_m = vehicle->absorbed_j = vehicle->ees_m_s = vehicle->olc_sd_g = NAN;
-    return CP_OK;
+    return fill_place(names->lane[role], vehicle, error);
 }
 
 static cp_status keep_pulse(const cp_pulse *raw, cp_crash_vehicle_row *vehicle, cp_error *error)

@@ -17,6 +17,7 @@ typedef struct cp_impact_names {
     cp_sumo_type type[2]; /* what that type is */
     bool at_fault[2];
     bool had_crashed[2]; /* it had crashed before: the surrogate's undamaged car is not it */
+    const char *lane[2]; /* SUMO's; NULL or "": not known */
 } cp_impact_names;
 
 /* What one vehicle crashes as. */

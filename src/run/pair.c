@@ -31,6 +31,8 @@ static void keep_roles(cp_branch_answer *answer, const char *const ids[2])
     SWAP(bool, answer->found.had_crashed);
     SWAP(const char *, answer->ids);
     SWAP(const char *, answer->types);
+    SWAP(const char *, answer->lanes);
+    answer->is_swapped = !answer->is_swapped;
     SWAP(cp_sumo_type, answer->type);
 #undef SWAP
 }
@@ -84,8 +86,12 @@ static cp_status fill_crash(const cp_simulation *simulation, const cp_branch_ans
         names.type[role] = answer->type[role];
         names.at_fault[role] = answer->found.at_fault[role];
         names.had_crashed[role] = answer->found.had_crashed[role];
+        names.lane[role] = answer->lanes[role];
     }
-    return cp_crash_record_fill(&answer->found.impact, &names, fleet, row, error);
+    cp_status status = cp_crash_record_fill(&answer->found.impact, &names, fleet, row, error);
+    return status == CP_OK ? cp_participant_rows_copy(&answer->found.participants,
+                                                      answer->is_swapped, &row->participants, error)
+                           : status;
 }
 
 static cp_status copy_samples(const cp_branch_answer *answer, cp_sample_row **sample, size_t *count,
@@ -185,6 +191,43 @@ static size_t count_new(const cp_pair *pair, const cp_branch_answer *answer)
     return count;
 }
 
+static bool involves(const char *const pair[2], const char *const ids[2])
+{
+    for (int k = 0; k < 2; k++)
+        if (strcmp(ids[k], pair[0]) == 0 || strcmp(ids[k], pair[1]) == 0)
+            return true;
+    return false;
+}
+
+static bool happens_again(const cp_branch_answer *answer, const char *const ids[2])
+{
+    const char *at = NULL;
+    for (size_t k = 0; k < answer->other_count; k++) {
+        cp_other_crash other = cp_branch_answer_other(answer, &at);
+        if (cp_branch_is_same_pair(ids, other.ids))
+            return true;
+    }
+    return false;
+}
+
+// Crashes of the baseline between others, from the checkpoint to the horizon, that the branch does
+// not have.
+static size_t count_vanished(const cp_pair *pair, const cp_branch_answer *answer)
+{
+    const cp_simulation *simulation = pair->simulation;
+    double horizon_s = pair->crash->time_s + pair->study->counterfactual.horizon_s;
+    size_t count = 0;
+    for (size_t f = 0; f < simulation->found_count; f++) {
+        const cp_impact *impact = &simulation->found[f].impact;
+        const char *ids[2] = {sumo_bridge_vehicle_id(impact->vehicle[0]),
+                              sumo_bridge_vehicle_id(impact->vehicle[1])};
+        count += cp_found_is_crash(&simulation->found[f]) && impact->time_s > pair->checkpoint_s &&
+                 impact->time_s <= horizon_s && !involves(pair->ids, ids) &&
+                 !happens_again(answer, ids);
+    }
+    return count;
+}
+
 static cp_outcome compare(double baseline, double treated, double tolerance)
 {
     if (treated < baseline - tolerance)
@@ -198,6 +241,7 @@ static cp_status judge(const cp_pair *pair, cp_branch_answer *answer, cp_counter
                        cp_error *error)
 {
     row->new_crashes = count_new(pair, answer);
+    row->vanished_crashes = count_vanished(pair, answer);
     row->outcome = row->outcome_olc = CP_OUTCOME_AVOIDED;
     if (!answer->has_crash)
         return CP_OK;

@@ -17,6 +17,7 @@ typedef struct named_crash {
     cp_impact_names names;         /* its texts are the following */
     char *id[2];                   /* owned */
     char *type[2];                 /* owned */
+    char *lane[2];                 /* owned */
 } named_crash;
 
 // What is happening in a replication; what is known about it is const.
@@ -89,8 +90,10 @@ static cp_status name_crash(const replication_run *run, const cp_found_contact *
         named->names.had_crashed[role] = found->had_crashed[role];
         named->id[role] = strdup(sumo_bridge_vehicle_id(impact->vehicle[role]));
         named->type[role] = strdup(sumo_bridge_type_id(impact->state[role].type));
-        if (named->id[role] == NULL || named->type[role] == NULL)
+        named->lane[role] = strdup(sumo_bridge_lane_id(impact->state[role].lane));
+        if (named->id[role] == NULL || named->type[role] == NULL || named->lane[role] == NULL)
             return cp_fail_memory(error, "crash");
+        named->names.lane[role] = named->lane[role];
         named->names.sumo_id[role] = named->id[role];
         named->names.sumo_type[role] = named->type[role];
         cp_status status = sumo_bridge_type(named->type[role], &named->names.type[role], error);
@@ -119,6 +122,7 @@ static void forget_names(replication_run *run)
         for (int role = 0; role < 2; role++) {
             free(run->named[k].id[role]);
             free(run->named[k].type[role]);
+            free(run->named[k].lane[role]);
         }
     free(run->named);
 }
@@ -132,6 +136,9 @@ static cp_status record_crash(replication_run *run, const named_crash *named, cp
     cp_status status =
         cp_crash_record_fill(&named->found->impact, &named->names, run->fleet, row, error);
     row->follows = number_of(simulation, named->found->follows);
+    if (status == CP_OK)
+        status =
+            cp_participant_rows_copy(&named->found->participants, false, &row->participants, error);
     if (simulation->history == NULL)
         return status;
 

@@ -2,6 +2,7 @@
 #include "run/simulation.h"
 
 #include "impact/footprint.h"
+#include "run/participants.h"
 #include "run/sumo_words.h"
 
 #include <stdlib.h>
@@ -96,6 +97,8 @@ void cp_simulation_end(cp_simulation *simulation)
     free(simulation->before);
     cp_cross_check_destroy(&simulation->check);
     cp_simulation_end_traffic(simulation);
+    for (size_t k = 0; k < simulation->found_count; k++)
+        cp_participant_rows_destroy(&simulation->found[k].participants);
     free(simulation->found);
     free(simulation->crashed);
     *simulation = (cp_simulation){0};
@@ -209,6 +212,12 @@ static cp_status take_impact(cp_simulation *simulation, const cp_impact *impact,
         found_as = CP_FOUND_WARMUP;
 
     cp_status status = remember_found(simulation, impact, found_as, error);
+    if (status != CP_OK)
+        return status;
+    cp_found_contact *found = &simulation->found[simulation->found_count - 1];
+    if (cp_found_is_crash(found))
+        status = cp_participants_of(simulation->controls, impact, found->had_crashed,
+                                    &found->participants, error);
     if (status == CP_OK && found_as == CP_FOUND_CRASH && simulation->history != NULL)
         status = remember_history(simulation, error);
     if (status == CP_OK)

@@ -6,6 +6,7 @@
 #include "impact/impact.h"
 #include "run/cross_check.h"
 #include "run/history.h"
+#include "store/participant_rows.h"
 #include "study/study_file.h"
 
 /* The traffic of one replication, step by step: what the baseline and every branch from a
@@ -24,6 +25,7 @@ typedef struct cp_found_contact {
     double error_since_s[2]; /* SUMO clock: since when it has erred towards the other; INFINITY */
     bool had_crashed[2];     /* it stands there since an earlier crash */
     size_t follows;          /* index of that crash (of both cars' the first); CP_FOLLOWS_NONE */
+    cp_participant_rows participants; /* of crashes; owned by the simulation */
 } cp_found_contact;
 
 /* What the two cars of a counted crash did before it. */

@@ -5,6 +5,7 @@
 #include "crash/validity.h"
 #include "pulse/pulse_codec.h"
 #include "store/crash_binding.h"
+#include "store/participant_binding.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -101,6 +102,7 @@ void cp_counterfactual_rows_destroy(cp_counterfactual_rows *rows)
 typedef struct writer {
     int64_t replication_id;
     cp_statement null_treatment, row, vehicle, member, pulse, sample;
+    cp_participant_writer participants;
 } writer;
 
 static int64_t crash_id(const writer *w, size_t crash)
@@ -184,7 +186,7 @@ static cp_status write_vehicle(writer *w, const cp_counterfactual_row *row, int 
     cp_bind_integer(s, 1, crash_id(w, row->crash));
     cp_bind_text(s, 2, ROLE[role]);
     cp_bind_integer(s, 3, cp_hash_row_id(row->variant));
-    cp_bind_crash_vehicle(s, vehicle, validity);
+    cp_bind_crash_vehicle(s, &row->treated, role, validity);
     cp_status status = cp_statement_run(s, error);
     cp_bind_integer(&w->member, 1, crash_id(w, row->crash));
     cp_bind_integer(&w->member, 2, cp_hash_row_id(row->variant));
@@ -216,14 +218,21 @@ static cp_status write_row(writer *w, const cp_counterfactual_row *row, cp_error
     cp_bind_text(s, 4, cp_outcome_text(row->outcome_olc));
     cp_bind_text(s, 5, invalid ? cp_null_status_text(row->reason) : NULL);
     cp_bind_text(s, 6, text_or_null(row->detail));
-    if (invalid)
+    if (invalid) {
         cp_bind_text(s, 7, NULL);
-    else
+        cp_bind_text(s, 20, NULL);
+    } else {
         cp_bind_integer(s, 7, (int64_t)row->new_crashes);
+        cp_bind_integer(s, 20, (int64_t)row->vanished_crashes);
+    }
     bind_treated(s, row, validity);
     cp_status status = cp_statement_run(s, error);
     for (int role = 0; status == CP_OK && row->has_crash && role < 2; role++)
         status = write_vehicle(w, row, role, error);
+    int64_t variant_id = cp_hash_row_id(row->variant);
+    if (status == CP_OK && row->has_crash)
+        status = cp_participant_writer_write(&w->participants, crash_id(w, row->crash), &variant_id,
+                                             &row->treated.participants, error);
     return status == CP_OK
                ? write_samples(w, row->crash, row->variant, row->sample, row->sample_count, error)
                : status;
@@ -242,16 +251,17 @@ static cp_status prepare(writer *w, cp_store *store, cp_error *error)
             store, what,
             "INSERT INTO counterfactual (crash_id, variant_id, outcome, outcome_olc, reason, "
             "detail, new_crashes, time_s, x_m, y_m, crash_type, closing_speed_m_s, "
-            "lateral_offset_m, angle_rad, overlap_1, validity, t_common_s, separation_s, shift_m) "
-            "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, "
-            "?18, ?19)",
+            "lateral_offset_m, angle_rad, overlap_1, validity, t_common_s, separation_s, shift_m, "
+            "vanished_crashes) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, "
+            "?14, "
+            "?15, ?16, ?17, ?18, ?19, ?20)",
             &w->row, error);
     if (status == CP_OK)
         status = cp_statement_prepare(
             store, what,
             "INSERT INTO counterfactual_vehicle VALUES (?1, ?3, ?2, ?5, ?6, ?7, ?8, ?9, ?10, ?11, "
             "?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, ?26, ?27, ?28, "
-            "?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40)",
+            "?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40, ?41, ?42, ?43, ?44, ?45)",
             &w->vehicle, error);
     if (status == CP_OK)
         status = cp_statement_prepare(
@@ -267,6 +277,8 @@ static cp_status prepare(writer *w, cp_store *store, cp_error *error)
                                       "INSERT INTO counterfactual_sample VALUES (?1, ?2, ?3, ?4, "
                                       "?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)",
                                       &w->sample, error);
+    if (status == CP_OK)
+        status = cp_participant_writer_prepare(&w->participants, store, true, error);
     return status;
 }
 
@@ -279,6 +291,7 @@ cp_status cp_counterfactual_rows_write(cp_store *store, int64_t replication_id,
         status = write_null_treatment(&w, &rows->null_treatment[k], error);
     for (size_t k = 0; status == CP_OK && k < rows->row_count; k++)
         status = write_row(&w, &rows->row[k], error);
+    cp_participant_writer_finish(&w.participants);
     cp_statement_finish(&w.sample);
     cp_statement_finish(&w.pulse);
     cp_statement_finish(&w.member);

@@ -65,6 +65,7 @@ typedef struct cp_counterfactual_row {
     cp_null_status reason; /* CP_NULL_REPRODUCED unless invalid */
     char detail[CP_DETAIL_SIZE];
     size_t new_crashes;
+    size_t vanished_crashes;
     bool has_crash;
     cp_crash_row treated;  /* owned; if has_crash */
     cp_sample_row *sample; /* owned; NULL when not asked for */

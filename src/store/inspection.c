@@ -61,6 +61,16 @@ static const rule RULES[] = {
      "SELECT 'replication ' || id || ' is running without an attempt' FROM replication AS r WHERE "
      "status = 'running' AND NOT EXISTS (SELECT 1 FROM attempt AS a WHERE a.replication_id = r.id "
      "AND a.outcome = 'running')"},
+    {"driver errors of vehicles", "SELECT count(*) FROM crash_vehicle",
+     "SELECT 'vehicle ' || v.role || ' of crash ' || v.crash_id || ' has not the ' || "
+     "coalesce(v.error_count, 'no') || ' driver errors it counts' FROM crash_vehicle AS v WHERE "
+     "coalesce(v.error_count, 0) <> (SELECT count(*) FROM crash_driver_error AS e WHERE e.crash_id "
+     "= v.crash_id AND e.role = v.role)"},
+    {"functions of vehicles", "SELECT count(*) FROM crash_function",
+     "SELECT 'vehicle ' || v.role || ' of crash ' || v.crash_id || ' has not one row for each "
+     "function of its variant' FROM crash_vehicle AS v JOIN variant AS t ON t.id = v.variant_id "
+     "WHERE v.error_count IS NOT NULL AND json_array_length(t.functions) <> (SELECT count(*) FROM "
+     "crash_function AS f WHERE f.crash_id = v.crash_id AND f.role = v.role)"},
     {"pulses of simulated vehicles", "SELECT count(*) FROM crash_vehicle",
      "SELECT 'vehicle ' || v.role || ' of crash ' || v.crash_id || CASE WHEN p.samples IS NULL "
      "THEN ' has no pulse' ELSE ' has a pulse but no severity' END FROM crash_vehicle AS v LEFT "
@@ -79,12 +89,23 @@ static const rule PAIR_RULES[] = {
      "its outcome' FROM counterfactual AS c WHERE (SELECT count(*) FROM counterfactual_vehicle AS "
      "v WHERE v.crash_id = c.crash_id AND v.variant_id = c.variant_id) <> CASE WHEN time_s IS NULL "
      "THEN 0 ELSE 2 END"},
+    {"driver errors of treated vehicles", "SELECT count(*) FROM counterfactual_vehicle",
+     "SELECT 'vehicle ' || v.role || ' of crash ' || v.crash_id || ' under variant ' || "
+     "v.variant_id || ' has not the driver errors it counts' FROM counterfactual_vehicle AS v "
+     "WHERE "
+     "coalesce(v.error_count, 0) <> (SELECT count(*) FROM counterfactual_driver_error AS e WHERE "
+     "e.crash_id = v.crash_id AND e.variant_id = v.variant_id AND e.role = v.role)"},
     {"pulses of treated vehicles", "SELECT count(*) FROM counterfactual_vehicle",
      "SELECT 'vehicle ' || v.role || ' of crash ' || v.crash_id || ' under variant ' || "
      "v.variant_id || CASE WHEN p.samples IS NULL THEN ' has no pulse' ELSE ' has a pulse but no "
      "severity' END FROM counterfactual_vehicle AS v LEFT JOIN counterfactual_pulse AS p USING "
      "(crash_id, variant_id, role) WHERE (v.delta_v_m_s IS NULL) <> (p.samples IS NULL)"},
 };
+
+// Besides them the file, vehicle files, pulses and what is looked at in pairs.
+_Static_assert(sizeof RULES / sizeof *RULES + sizeof PAIR_RULES / sizeof *PAIR_RULES + 8 <=
+                   CP_INSPECTION_RESULTS_MAX,
+               "no room for so many results");
 
 static cp_status apply_rule(cp_store *store, const rule *applied, cp_inspection *inspection,
                             cp_error *error)

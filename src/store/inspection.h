@@ -17,7 +17,7 @@ typedef struct cp_inspection_result {
     char first[512]; /* of the wrong ones, in words; "" when all is well */
 } cp_inspection_result;
 
-#define CP_INSPECTION_RESULTS_MAX 16
+#define CP_INSPECTION_RESULTS_MAX 32
 
 typedef struct cp_inspection {
     cp_inspection_result result[CP_INSPECTION_RESULTS_MAX];

@@ -5,6 +5,7 @@
 #include "pulse/pulse_codec.h"
 #include "store/counterfactual_rows.h"
 #include "store/crash_binding.h"
+#include "store/participant_binding.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -59,8 +60,12 @@ void cp_crash_row_destroy(cp_crash_row *crash)
         free(crash->vehicle[v].sumo_id);
         free(crash->vehicle[v].sumo_type);
         free(crash->vehicle[v].vehicle_model);
+        free(crash->vehicle[v].lane);
+        free(crash->vehicle[v].edge);
+        free(crash->vehicle[v].junction);
         free(crash->vehicle[v].pulse);
     }
+    cp_participant_rows_destroy(&crash->participants);
     free(crash->history);
     *crash = (cp_crash_row){0};
 }
@@ -172,25 +177,41 @@ static void bind_severity(cp_statement *s, const cp_crash_vehicle_row *vehicle)
     cp_bind_real(s, 40, vehicle->olc_sd_g);
 }
 
-void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_vehicle_row *vehicle,
+// Who and where: parameters 41 to 45.
+static void bind_place(cp_statement *s, const cp_crash_row *crash, int role)
+{
+    const cp_crash_vehicle_row *vehicle = &crash->vehicle[role];
+    int errors = cp_participant_error_count(&crash->participants, role);
+    cp_bind_real(s, 41, vehicle->mass_kg);
+    cp_bind_text(s, 42, vehicle->lane);
+    cp_bind_text(s, 43, vehicle->edge);
+    cp_bind_text(s, 44, vehicle->junction);
+    if (errors < 0)
+        cp_bind_text(s, 45, NULL);
+    else
+        cp_bind_integer(s, 45, errors);
+}
+
+void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_row *crash, int role,
                            char validity[CP_VALIDITY_TEXT_SIZE])
 {
+    const cp_crash_vehicle_row *vehicle = &crash->vehicle[role];
     bind_vehicle_state(s, vehicle);
     cp_bind_text(s, 21, cp_validity_text(vehicle->outside, validity));
     bind_severity(s, vehicle);
+    bind_place(s, crash, role);
 }
 
 static cp_status write_vehicle(cp_statement *s, const cp_result_rows *rows, size_t number, int role,
                                cp_error *error)
 {
     const cp_crash_row *crash = &rows->crash[number];
-    const cp_crash_vehicle_row *vehicle = &crash->vehicle[role];
     char validity[CP_VALIDITY_TEXT_SIZE];
     cp_bind_integer(s, 1, rows->replication_id * CP_CRASHES_MAX + (int64_t)number);
     cp_bind_text(s, 2, ROLE[role]);
     cp_bind_integer(s, 3, rows->replication_id);
     cp_bind_text(s, 4, crash_type(crash));
-    cp_bind_crash_vehicle(s, vehicle, validity);
+    cp_bind_crash_vehicle(s, crash, role, validity);
     return cp_statement_run(s, error);
 }
 
@@ -257,6 +278,7 @@ static cp_status write_history(cp_statement *s, const cp_result_rows *rows, size
 static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_error *error)
 {
     cp_statement crash = {0}, vehicle = {0}, member = {0}, pulse = {0}, history = {0};
+    cp_participant_writer participants = {0};
     if (rows->crash_count > CP_CRASHES_MAX)
         return cp_fail(error, CP_STORE_FAILED, "replication %lld has more than %d crashes",
                        (long long)rows->replication_id, CP_CRASHES_MAX);
@@ -272,9 +294,8 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
             store, "writing a vehicle of a crash",
             "INSERT INTO crash_vehicle SELECT ?1, ?2, scenario_id, variant_id, ?4, ?5, ?6, ?7, ?8, "
             "?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, "
-            "?26, ?27, ?28, ?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40 FROM "
-            "replication "
-            "WHERE id = ?3",
+            "?26, ?27, ?28, ?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40, ?41, ?42, "
+            "?43, ?44, ?45 FROM replication WHERE id = ?3",
             &vehicle, error);
     if (status == CP_OK)
         status = cp_statement_prepare(
@@ -290,6 +311,8 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
             "INSERT INTO pre_crash_sample (crash_id, role, number, time_s, front_x_m, front_y_m, "
             "yaw_rad, speed_m_s, acceleration_m_s2) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
             &history, error);
+    if (status == CP_OK)
+        status = cp_participant_writer_prepare(&participants, store, false, error);
     for (size_t k = 0; status == CP_OK && k < rows->crash_count; k++) {
         status = write_crash(&crash, rows, k, error);
         for (int role = 0; status == CP_OK && role < 2; role++) {
@@ -301,7 +324,12 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
         }
         if (status == CP_OK)
             status = write_history(&history, rows, k, error);
+        if (status == CP_OK)
+            status = cp_participant_writer_write(&participants,
+                                                 rows->replication_id * CP_CRASHES_MAX + (int64_t)k,
+                                                 NULL, &rows->crash[k].participants, error);
     }
+    cp_participant_writer_finish(&participants);
     cp_statement_finish(&history);
     cp_statement_finish(&pulse);
     cp_statement_finish(&member);

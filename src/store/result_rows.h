@@ -4,6 +4,7 @@
 
 #include "crash/crash_configuration.h"
 #include "pulse/severity.h"
+#include "store/participant_rows.h"
 #include "store/store.h"
 
 #include <stdbool.h>
@@ -20,6 +21,10 @@ typedef struct cp_crash_vehicle_row {
     const char *chosen_by;     /* static text: why this model; "" without one */
     char no_model_reason[160]; /* why none; "" with one */
     bool at_fault;
+    char *lane;         /* NULL: not known, as the next */
+    char *edge;         /* of that lane */
+    char *junction;     /* that the lane lies in; NULL on a road, too */
+    double mass_kg;     /* of its model; NAN without one */
     cp_body_state body; /* at first contact, world */
     double speed_m_s;
     double length_m;
@@ -65,6 +70,7 @@ typedef struct cp_crash_row {
     size_t follows; /* number of that crash if is_secondary; CP_FOLLOWS_NONE: not counted */
     cp_history_row *history; /* owned; role a's in order of time, then b's; NULL: none */
     size_t history_count;
+    cp_participant_rows participants; /* owned */
 } cp_crash_row;
 
 typedef struct cp_contact_row {

@@ -13,6 +13,9 @@
 /* The SQL of version k + 1, zero-terminated; CP_STORE_VERSION entries. */
 extern const unsigned char *const CP_SCHEMA[];
 
+/* The first version that tells how crashes came about; what is older has NULL there. */
+#define CP_SCHEMA_OF_CAUSES 12
+
 /* Bring the database from whatever version it has to CP_STORE_VERSION and write the views, all in
  * one transaction or not at all. Every reference between tables is checked before the commit.
  * Errors: CP_STORE_FAILED, CP_BUSY. */

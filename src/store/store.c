@@ -2,6 +2,7 @@
 #include "store/store.h"
 
 #include "core/file.h"
+#include "core/log.h"
 #include "store/schema.h"
 #include "store/schema_match.h"
 #include "store/store_sqlite.h"
@@ -219,6 +220,23 @@ void cp_store_rollback(cp_store *store)
 
 // ---- opening -------------------------------------------------------------------------------
 
+// Say what an older database cannot tell of its crashes.
+static cp_status tell_unknown(cp_store *store, int version, cp_error *error)
+{
+    int64_t crashes = 0;
+    if (version == 0 || version >= CP_SCHEMA_OF_CAUSES)
+        return CP_OK;
+    cp_status status =
+        cp_store_integer(store, "reading", "SELECT count(*) FROM crash", &crashes, error);
+    if (status == CP_OK && crashes > 0)
+        cp_log_info(
+            "%s: of the %lld crashes written by an earlier version the driver errors, what "
+            "functions did, lanes and masses are not known: NULL in crash_vehicle, no rows in "
+            "crash_driver_error and crash_function",
+            store->path, (long long)crashes);
+    return status;
+}
+
 // Whose file it is and how old, before anything is changed in it. views: whether those of this
 // program stand in it.
 static cp_status check_version(cp_store *store, cp_store_mode mode, bool *views, cp_error *error)
@@ -243,7 +261,7 @@ static cp_status check_version(cp_store *store, cp_store_mode mode, bool *views,
                        store->path, version, CP_STORE_VERSION);
     status = cp_schema_migrate(store, error);
     *views = status == CP_OK;
-    return status;
+    return status == CP_OK ? tell_unknown(store, version, error) : status;
 }
 
 static cp_status fail_opening(cp_store *store, int code, cp_error *error)

@@ -246,10 +246,15 @@ static json_t *counterfactual_json(const cp_study *study, const cp_plan_rows *ro
         if (!is_run(study, k))
             json_object_set_new(treatments, rows->variant[k].name,
                                 json_string(rows->variant[k].functions));
-    return json_pack("{s:o, s:f, s:I, s:f}", "treatments", treatments, "checkpoint_interval_s",
-                     study->counterfactual.checkpoint_interval_s, "checkpoints",
-                     (json_int_t)study->counterfactual.checkpoints, "time_series_s",
-                     study->counterfactual.time_series_s);
+    json_t *section =
+        json_pack("{s:o, s:f, s:I, s:f}", "treatments", treatments, "checkpoint_interval_s",
+                  study->counterfactual.checkpoint_interval_s, "checkpoints",
+                  (json_int_t)study->counterfactual.checkpoints, "time_series_s",
+                  study->counterfactual.time_series_s);
+    // Only another one than ever before: what was run with that stays done.
+    if (study->counterfactual.horizon_s != CP_STUDY_HORIZON_S)
+        json_object_set_new(section, "horizon_s", json_real(study->counterfactual.horizon_s));
+    return section;
 }
 
 // SHA-256 over all that the outcome of a replication depends on, as JSON.

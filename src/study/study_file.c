@@ -47,6 +47,7 @@ typedef struct raw_counterfactual {
     char *checkpoint_interval_s;
     char *checkpoints;
     char *time_series_s;
+    char *horizon_s;
 } raw_counterfactual;
 
 typedef struct raw_after_crash {
@@ -165,7 +166,8 @@ static const cyaml_schema_field_t VEHICLES_FIELDS[] = {
 static const cyaml_schema_field_t COUNTERFACTUAL_FIELDS[] = {
     TEXT_OPTIONAL("checkpoint_interval_s", raw_counterfactual, checkpoint_interval_s),
     TEXT_OPTIONAL("checkpoints", raw_counterfactual, checkpoints),
-    TEXT_OPTIONAL("time_series_s", raw_counterfactual, time_series_s), CYAML_FIELD_END};
+    TEXT_OPTIONAL("time_series_s", raw_counterfactual, time_series_s),
+    TEXT_OPTIONAL("horizon_s", raw_counterfactual, horizon_s), CYAML_FIELD_END};
 
 static const cyaml_schema_field_t AFTER_CRASH_FIELDS[] = {TEXT("stay_s", raw_after_crash, stay_s),
                                                           CYAML_FIELD_END};
@@ -330,7 +332,8 @@ static cp_status take_counterfactual(const cp_yaml_file *file, const raw_counter
 {
     cp_study_counterfactual *section = &study->counterfactual;
     uint64_t checkpoints = 20;
-    *section = (cp_study_counterfactual){.checkpoint_interval_s = 2.0, .checkpoints = 20};
+    *section = (cp_study_counterfactual){
+        .checkpoint_interval_s = 2.0, .checkpoints = 20, .horizon_s = CP_STUDY_HORIZON_S};
     if (raw == NULL)
         return CP_OK;
     if (study->design != CP_DESIGN_COUNTERFACTUAL)
@@ -346,6 +349,9 @@ static cp_status take_counterfactual(const cp_yaml_file *file, const raw_counter
     if (status == CP_OK)
         status = cp_yaml_number(file, "counterfactual.time_series_s", raw->time_series_s, 0, 60,
                                 &section->time_series_s, error);
+    if (status == CP_OK)
+        status = cp_yaml_number(file, "counterfactual.horizon_s", raw->horizon_s, 1, 120,
+                                &section->horizon_s, error);
     section->checkpoints = (size_t)checkpoints;
     return status;
 }

@@ -69,7 +69,11 @@ typedef struct cp_study_counterfactual {
     double checkpoint_interval_s; /* default 2; [0.5, 60] */
     size_t checkpoints;           /* kept at a time; default 20; 1 ... 200 */
     double time_series_s;         /* stored before and after each contact; default 0; [0, 60] */
+    double horizon_s;             /* how long after the baseline's contact a branch goes on; default
+                                     CP_STUDY_HORIZON_S; [1, 120] */
 } cp_study_counterfactual;
+
+#define CP_STUDY_HORIZON_S 10.0
 
 typedef struct cp_study {
     char *path;

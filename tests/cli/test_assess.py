@@ -44,7 +44,8 @@ def rows(*words):
 def crashes(database):
     return sqlite3.connect(database).execute(
         "SELECT a.sumo_id, b.sumo_id, c.time_s, c.closing_speed_m_s, c.lateral_offset_m, "
-        "c.angle_rad, a.olc_g, b.olc_g, a.delta_v_m_s, c.crash_type, c.validity, a.vehicle_model "
+        "c.angle_rad, a.olc_g, b.olc_g, a.delta_v_m_s, c.crash_type, c.validity, a.vehicle_model, "
+        "a.mass_kg, b.mass_kg, a.lane, b.lane, a.edge, b.junction "
         "FROM crash AS c JOIN crash_vehicle AS a ON a.crash_id = c.id AND a.role = 'a' "
         "JOIN crash_vehicle AS b ON b.crash_id = c.id AND b.role = 'b' ORDER BY c.number").fetchall()
 
@@ -102,6 +103,12 @@ with tempfile.TemporaryDirectory() as name:
         assert (crash["a"], crash["b"]) == row[:2]
         assert math.isclose(float(crash["closing_speed_km_h"]), 3.6 * row[3])
         assert row[6] is None or math.isclose(float(crash["olc_a_g"]), row[6])
+    # Where it was and how heavy the cars are is known of files too; who erred is not.
+    assert all(row[14] and row[12] and row[16] for row in ours), ours
+    for table, known in (("assess", 0), ("run", 1)):
+        assert sqlite3.connect(folder / f"{table}.db").execute(
+            "SELECT min(error_count IS NOT NULL), max(error_count IS NOT NULL), (SELECT count(*) FROM "
+            "crash_function) FROM crash_vehicle").fetchone() == (known, known, 0)
     verdict = "SELECT found_as, count(*) FROM sumo_collision GROUP BY 1"
     check = run(crashpulse, "check", folder / "assess.db", "--format", "csv").stdout
     assert all(row["wrong"] == "0" for row in csv.DictReader(check.splitlines())), check

@@ -49,8 +49,11 @@ static void tracks_and_exposure(void **unused)
     assert_true(a->sample[0].yaw_rad == 0.0 && a->sample[0].front_m.x == 1.0);
     assert_true(a->sample[1].yaw_rad == cp_rad_from_deg(90.0) && a->sample[1].time_s == 0.3);
     assert_true(a->sample[1].lane_position_m == 4.0);
+    assert_string_equal(record.lanes[a->sample[0].lane], "e_0");
+    assert_true(record.lane_count == 1);
     assert_true(b->sample[0].yaw_rad == cp_rad_from_deg(180.0) && b->sample[0].speed_m_s == 5.0);
     assert_true(isnan(b->sample[0].lane_position_m));
+    assert_true(b->sample[0].lane == CP_FCD_NO_LANE);
     cp_fcd_record_destroy(&record);
 }
 

@@ -93,7 +93,8 @@ static void null_treatment_reproduces_and_outcomes_add_up(void **state)
                         "SELECT count(*) FROM counterfactual_pair WHERE variant <> 'aeb' AND "
                         "outcome = 'unchanged' AND outcome_olc IN ('unchanged', 'no_olc') AND "
                         "treated_closing_speed_m_s = baseline_closing_speed_m_s AND "
-                        "treated_time_s = baseline_time_s AND new_crashes = 0") == 2 * valid);
+                        "treated_time_s = baseline_time_s AND new_crashes = 0 AND "
+                        "vanished_crashes = 0") == 2 * valid);
     // Braking helps in most pairs.
     double better =
         crossing_number(f, "pairs",

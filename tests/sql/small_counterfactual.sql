@@ -83,7 +83,7 @@ FROM outcome;
 INSERT INTO null_treatment (crash_id, status, lead_s, checkpoint_s)
 SELECT DISTINCT id, CASE WHEN outcome = 'invalid' THEN 'no_checkpoint' ELSE 'reproduced' END, 4.0,
        CASE WHEN outcome <> 'invalid' THEN time_s - 5.0 END FROM treated;
-INSERT INTO counterfactual (crash_id, variant_id, outcome, outcome_olc, reason, new_crashes, time_s,
+INSERT INTO counterfactual (crash_id, variant_id, outcome, outcome_olc, reason, new_crashes, vanished_crashes, time_s,
                             x_m, y_m, crash_type, closing_speed_m_s, lateral_offset_m, angle_rad,
                             validity)
 SELECT id, variant_id, outcome,
@@ -91,6 +91,7 @@ SELECT id, variant_id, outcome,
             WHEN crash_type NOT LIKE 'front-%' THEN 'no_olc' ELSE outcome END,
        CASE WHEN outcome = 'invalid' THEN 'no_checkpoint' END,
        CASE WHEN outcome <> 'invalid' THEN number % 7 = 6 END,
+       CASE WHEN outcome <> 'invalid' THEN number % 5 = 4 END,
        iif(outcome IN ('invalid', 'avoided'), NULL, time_s),
        iif(outcome IN ('invalid', 'avoided'), NULL, x_m),
        iif(outcome IN ('invalid', 'avoided'), NULL, y_m),

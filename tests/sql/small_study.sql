@@ -112,6 +112,27 @@ INSERT INTO sumo_collision (replication_id, number, time_s, collider, victim, su
 SELECT replication_id, number, time_s, 'flow.' || 10 * number, 'flow.' || (10 * number + 1),
        'collision', 'crash' FROM crash;
 
+-- Who erred, what AEB did, where and how heavy; of the last replication nothing is known.
+UPDATE crash_vehicle SET mass_kg = CASE role WHEN 'a' THEN 1500.0 ELSE 1200.0 + 25.0 * (crash_id % 5) END,
+       lane = CASE WHEN scenario_id = 11 THEN ':centre_' || (crash_id % 3) || '_0' ELSE 'road_' || (crash_id % 2) END,
+       edge = CASE WHEN scenario_id = 11 THEN ':centre_' || (crash_id % 3) ELSE 'road' END,
+       junction = CASE WHEN scenario_id = 11 THEN 'centre' END,
+       error_count = CASE WHEN role = 'a' THEN crash_id % 4 <> 3 ELSE crash_id % 5 = 0 END
+WHERE crash_id / 16384 NOT IN (SELECT id FROM replication WHERE number = 7);
+INSERT INTO crash_driver_error
+SELECT crash_id, role, 0, CASE scenario_id WHEN 11 THEN 'failed_to_see' ELSE 'risky_overtaking' END,
+       CASE WHEN scenario_id = 12 THEN 'everybody' WHEN role = 'b' THEN 'another' ELSE 'opponent' END,
+       4.5, 0.25 * (crash_id % 2), NOT (scenario_id = 11 AND role = 'b')
+FROM crash_vehicle WHERE error_count = 1;
+INSERT INTO crash_function
+SELECT crash_id, role, 0, 'aeb', state, NULL, braking_s + 0.2, braking_s, NULL,
+       CASE state WHEN 'released' THEN 0.1 END, CASE state WHEN 'braking' THEN 8.0 END,
+       braking_s * 0.0 + 8.0, braking_s * 7.5
+FROM (SELECT *, CASE WHEN state IN ('braking', 'released') THEN 0.2 + 0.1 * (crash_id % 7) END AS braking_s
+      FROM (SELECT *, CASE WHEN role = 'b' THEN 'not_equipped' WHEN crash_id % 3 = 0 THEN 'idle'
+                           WHEN crash_id % 7 = 1 THEN 'released' ELSE 'braking' END AS state
+            FROM crash_vehicle WHERE variant_id = 22 AND error_count IS NOT NULL));
+
 -- Without driver errors: one network gives a crash, the other only grazes.
 INSERT INTO background_run (scenario_id, seed, step_length_s, simulated_s, vehicle_km, vehicle_h,
                             departed, configuration_hash) VALUES

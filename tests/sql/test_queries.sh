@@ -102,6 +102,15 @@ expect "crashes of crash_types" "$(sum 3 crash_types)" "$(one 'SELECT count(*) F
 expect "vehicles of at_fault" "$(sum 4 at_fault)" "$(one 'SELECT count(*) FROM crash_vehicle')"
 expect "crashes of both_vehicles" "$(sum 4 both_vehicles)" \
     "$(one "SELECT count(*) FROM crash WHERE crash_type = 'front-front'")"
+expect "crashes of crashes_by_driver_error" "$(sum 4 crashes_by_driver_error)" "$(one 'SELECT count(*) FROM crash')"
+expect "crashes without a known cause of crashes_by_driver_error" \
+    "$(sqlite3 -readonly "$db" <"$queries/crashes_by_driver_error.sql" | awk -F'|' '$3 == "not_known" { s += $4 } END { print s }')" \
+    "$(one 'SELECT count(*) FROM crash_vehicle WHERE role = '"'a'"' AND error_count IS NULL')"
+expect "crashes of crashes_by_place" "$(sum 5 crashes_by_place)" "$(one 'SELECT count(*) FROM crash')"
+expect "cars of function_at_contact" "$(sum 5 function_at_contact)" \
+    "$(one "SELECT count(*) FROM crash_function AS f JOIN crash AS c ON c.id = f.crash_id WHERE c.crash_type LIKE 'front-%'")"
+expect "cars of crash_partners" "$(sum 6 crash_partners)" \
+    "$(one 'SELECT count(*) FROM crash_vehicle WHERE frontal = 1 AND mass_kg IS NOT NULL')"
 expect "last rows of convergence" \
     "$(shell <"$queries/convergence.sql" | awk -F'|' '$2 == 7 { print $3 "|" $5 }' | paste -sd' ')" \
     "$(one "SELECT group_concat(frontal_crashes || '|' || round(olc_median_g, 2), ' ') FROM

@@ -71,6 +71,24 @@ static void results_of_nobody(void **state)
     assert_found(*state, "results without status done", "is planned and has crashes");
 }
 
+static void error_that_is_not_counted(void **state)
+{
+    cp_store_close(open_finished(*state));
+    break_by(*state, "INSERT INTO crash_driver_error SELECT crash_id, role, 0, 'lane_drift', "
+                     "'everybody', 2, 0, 1 FROM crash_vehicle LIMIT 1");
+    assert_found(*state, "driver errors of vehicles", "has not the no driver errors it counts");
+    break_by(*state, "DELETE FROM crash_driver_error; UPDATE crash_vehicle SET error_count = 2");
+    assert_found(*state, "driver errors of vehicles", "has not the 2 driver errors it counts");
+}
+
+static void function_that_is_missing(void **state)
+{
+    cp_store_close(open_finished(*state));
+    break_by(*state, "UPDATE crash_vehicle SET error_count = 0; UPDATE variant SET functions = "
+                     "json_array(json_object('function', 'aeb'))");
+    assert_found(*state, "functions of vehicles", "has not one row for each function");
+}
+
 static void gap_in_numbers(void **state)
 {
     cp_store_close(open_finished(*state));
@@ -115,6 +133,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(dangling_reference, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(copy_that_lies, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(results_of_nobody, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(error_that_is_not_counted, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(function_that_is_missing, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(gap_in_numbers, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(damaged_pulse, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(changed_vehicle_file, fixture_begin, fixture_end),

@@ -129,6 +129,12 @@ static void migrates_from_every_version(void **state)
         assert_ok(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), &error);
         assert_true(number_of(store, "PRAGMA user_version") == CP_STORE_VERSION);
         assert_true(number_of(store, "SELECT sum(crashes) FROM olc_by_variant") == 5);
+        // How those crashes came about is not known, which is not the same as no error.
+        assert_true(number_of(store, "SELECT count(*) FROM crash_vehicle WHERE mass_kg IS NULL AND "
+                                     "lane IS NULL AND edge IS NULL AND junction IS NULL AND "
+                                     "error_count IS NULL") == 10);
+        assert_true(number_of(store, "SELECT (SELECT count(*) FROM crash_driver_error) + (SELECT "
+                                     "count(*) FROM crash_function)") == 0);
         assert_ok(cp_inspection_run(store, &inspection, &error), &error);
         assert_int_equal(inspection.wrong, 0);
         cp_store_close(store);

@@ -115,6 +115,79 @@ static void pulse_comes_back(void **state)
     cp_store_close(store);
 }
 
+// Rows of a crash whose driver a erred and whose b has a function that brakes, as crash 0 of
+// results.
+static void fill_participants(cp_crash_row *crash)
+{
+    cp_participant_rows *rows = &crash->participants;
+    rows->is_known = true;
+    rows->error = calloc(2, sizeof *rows->error);
+    rows->function = calloc(2, sizeof *rows->function);
+    assert_true(rows->error != NULL && rows->function != NULL);
+    rows->error_count = rows->function_count = 2;
+    rows->error[0] = (cp_driver_error_row){0, 0, "failed_to_see", "opponent", 2.5, 0.0, true};
+    rows->error[1] = (cp_driver_error_row){0, 2, "lane_drift", "everybody", 6.0, 3.5, false};
+    rows->function[0] =
+        (cp_function_row){0, 0, "aeb", "not_equipped", NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+    rows->function[1] =
+        (cp_function_row){1, 0, "aeb", "braking", NAN, 1.2, 1.0, NAN, NAN, 8.0, 7.5, 6.25};
+    for (int role = 0; role < 2; role++) {
+        crash->vehicle[role].mass_kg = 1400 + role;
+        crash->vehicle[role].lane = strdup(":j_1_2_0");
+        crash->vehicle[role].edge = strdup(":j_1_2");
+        crash->vehicle[role].junction = role == 0 ? strdup("j_1") : NULL;
+    }
+}
+
+static void how_a_crash_came_is_stored(void **state)
+{
+    small_plan plan;
+    cp_error error = {0};
+    cp_store *store = open_planned(*state, &plan);
+    cp_result_rows results = {.replication_id = plan.replication[0].id};
+    assert_ok(cp_claim_take(store, results.replication_id, plan.replication[0].configuration_hash,
+                            &SOMEBODY, &results.attempt, &error),
+              &error);
+    add_crash(&results, 1, 20, 20);
+    add_crash(&results, 2, 20, 20); // nothing known of it
+    fill_participants(&results.crash[0]);
+    assert_ok(cp_result_rows_commit(store, &results, &error), &error);
+    assert_true(number_of(store,
+                          "SELECT sum(error_count) FROM crash_vehicle WHERE crash_id % 16384 "
+                          "= 0") == 2);
+    assert_true(number_of(store,
+                          "SELECT count(*) FROM crash_vehicle WHERE crash_id % 16384 = 1 AND "
+                          "error_count IS NULL AND lane IS NULL") == 2);
+    assert_true(number_of(store,
+                          "SELECT count(*) FROM crash_vehicle WHERE mass_kg = 1401 AND role = "
+                          "'b' AND lane = ':j_1_2_0' AND edge = ':j_1_2' AND junction IS "
+                          "NULL") == 1);
+    assert_true(number_of(store, "SELECT count(*) FROM crash_cause WHERE driver_error = "
+                                 "'failed_to_see' AND role = 'a' AND causes = 1 AND began_s = "
+                                 "2.5") == 1);
+    assert_true(number_of(store, "SELECT count(*) FROM crash_driver_error WHERE number = 2 AND "
+                                 "is_cause = 0 AND ended_s = 3.5") == 1);
+    assert_true(number_of(store,
+                          "SELECT count(*) FROM function_at_contact WHERE role = 'b' AND state "
+                          "= 'braking' AND requested_s = 1.2 AND braking_s = 1 AND "
+                          "brake_request_m_s2 = 8 AND deceleration_m_s2 = 7.5 AND "
+                          "speed_taken_off_m_s = 6.25 AND warned_s IS NULL") == 1);
+    cp_result_rows_destroy(&results);
+    cp_store_close(store);
+
+    // The other way round: roles change, and the order with them.
+    cp_crash_row crash = {0};
+    cp_participant_rows swapped;
+    fill_participants(&crash);
+    assert_ok(cp_participant_rows_copy(&crash.participants, true, &swapped, &error), &error);
+    assert_true(swapped.is_known && swapped.error[0].role == 1 && swapped.error[1].role == 1);
+    assert_string_equal(swapped.function[0].state, "braking");
+    assert_int_equal(swapped.function[0].role, 0);
+    assert_int_equal(swapped.function[1].role, 1);
+    cp_participant_rows_destroy(&swapped);
+    cp_crash_row_destroy(&crash);
+}
+
 static void copies_cannot_lie(void **state)
 {
     const fixture *f = *state;
@@ -145,6 +218,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(lost_claim_writes_nothing, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(failed_commit_writes_nothing, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(pulse_comes_back, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(how_a_crash_came_is_stored, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(copies_cannot_lie, fixture_begin, fixture_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

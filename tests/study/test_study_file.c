@@ -251,7 +251,7 @@ static void counterfactual_section_and_equipment(void **state)
 
     text = study_with("design: paired_seeds",
                       "design: counterfactual\n"
-                      "counterfactual: {checkpoint_interval_s: 4, time_series_s: 5}");
+                      "counterfactual: {checkpoint_interval_s: 4, time_series_s: 5, horizon_s: 3}");
     write_text(f, "study.yaml", text);
     free(text);
     assert_ok(cp_study_load(f->study, &study, &error), &error);
@@ -259,6 +259,7 @@ static void counterfactual_section_and_equipment(void **state)
     assert_true(study.counterfactual.checkpoint_interval_s == 4.0);
     assert_int_equal(study.counterfactual.checkpoints, 20);
     assert_true(study.counterfactual.time_series_s == 5.0);
+    assert_true(study.counterfactual.horizon_s == 3.0);
     assert_int_equal(cp_study_baseline(&study), 0);
     cp_study_destroy(&study);
 }

@@ -238,6 +238,16 @@ static double error_since_s(const void *state, uint32_t vehicle, uint32_t other)
     return INFINITY;
 }
 
+static cp_status visit_errors(const void *state, cp_error_visit visit, void *context,
+                              cp_error *error)
+{
+    const failed_to_see *self = state;
+    cp_status status = CP_OK;
+    for (size_t k = 0; k < self->encounter_count && status == CP_OK; k++)
+        status = visit(context, self->encounters[k].ego, self->encounters[k].foe, error);
+    return status;
+}
+
 static size_t counters(const void *state, const char **names, double *values, size_t room)
 {
     const failed_to_see *self = state;
@@ -260,6 +270,7 @@ const cp_control_type CP_CONTROL_FAILED_TO_SEE = {
     .step = step,
     .is_at_fault = is_at_fault,
     .error_since_s = error_since_s,
+    .visit_errors = visit_errors,
     .counters = counters,
     .destroy = destroy,
 };

@@ -228,6 +228,16 @@ static double error_since_s(const void *state, uint32_t vehicle, uint32_t other)
     return INFINITY;
 }
 
+static cp_status visit_errors(const void *state, cp_error_visit visit, void *context,
+                              cp_error *error)
+{
+    const misjudged_gap *self = state;
+    cp_status status = CP_OK;
+    for (size_t k = 0; k < self->count && status == CP_OK; k++)
+        status = visit(context, self->decisions[k].ego, self->decisions[k].foe, error);
+    return status;
+}
+
 static size_t counters(const void *state, const char **names, double *values, size_t room)
 {
     const misjudged_gap *self = state;
@@ -248,6 +258,7 @@ const cp_control_type CP_CONTROL_MISJUDGED_GAP = {
     .step = step,
     .is_at_fault = is_at_fault,
     .error_since_s = error_since_s,
+    .visit_errors = visit_errors,
     .counters = counters,
     .destroy = destroy,
 };

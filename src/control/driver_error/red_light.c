@@ -186,6 +186,17 @@ static bool is_at_fault(const void *state, uint32_t vehicle)
     return false;
 }
 
+static cp_status visit_errors(const void *state, cp_error_visit visit, void *context,
+                              cp_error *error)
+{
+    const red_light *self = state;
+    cp_status status = CP_OK;
+    for (size_t k = 0; k < self->count && status == CP_OK; k++)
+        if (self->runners[k].is_running)
+            status = visit(context, self->runners[k].vehicle, CP_EVERYBODY, error);
+    return status;
+}
+
 static size_t counters(const void *state, const char **names, double *values, size_t room)
 {
     const red_light *self = state;
@@ -207,6 +218,7 @@ const cp_control_type CP_CONTROL_RED_LIGHT = {
     .create = create,
     .step = step,
     .is_at_fault = is_at_fault,
+    .visit_errors = visit_errors,
     .counters = counters,
     .destroy = destroy,
 };

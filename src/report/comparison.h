@@ -51,14 +51,18 @@ typedef enum cp_slice_quantity {
 /* Those that are compared: the first ones. */
 #define CP_QUANTITIES_COMPARED 3
 
-/* Expected injured drivers by one risk function: the sum of the probabilities over both drivers of
- * the frontal crashes, or over those whose vehicle is inside validity. */
+/* Expected injured drivers by one risk function: the sum of the probabilities over the drivers it
+ * is of in frontal crashes (those struck on their front, or both), or over those whose vehicle is
+ * inside validity. Intervals carry what is uncertain of the function where its covariance is known.
+ */
 typedef struct cp_injury_figures {
     size_t drivers; /* with a known predictor */
     size_t unknown; /* without */
     double expected;
     double rate; /* expected per 10^6 veh-km; NAN without exposure */
     cp_interval rate_interval;
+    bool with_parameters;   /* the function has a covariance */
+    double parameters_se_1; /* relative standard error it leaves; 0 without, NAN of nothing */
 } cp_injury_figures;
 
 /* Benefit: 1 - rate of the treatment over rate of the baseline, of expected injured drivers per
@@ -68,6 +72,8 @@ typedef struct cp_benefit_figures {
     double treatment;
     double benefit_1; /* NAN without any expected with the baseline */
     cp_interval interval;
+    bool with_parameters;   /* the function has a covariance */
+    double parameters_se_1; /* relative standard error it leaves to 1 - benefit */
     double bound[2]; /* of the benefit, lower and upper, were the risk of each vehicle outside
                         validity, or without a predictor, anything from 0 to 1; -INFINITY; NAN, also
                         of too few crashes for an interval */

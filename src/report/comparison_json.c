@@ -76,12 +76,13 @@ static json_t *injuries_json(const cp_study_data *data, const cp_variant_figures
         json_t *list = json_array();
         for (size_t k = 0; k < data->risk_count; k++) {
             const cp_injury_figures *i = &v->injury[scope][k];
-            json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:I, s:f, s:o, s:o}", "function",
-                                                  data->risk[k].name, "level", data->risk[k].level,
-                                                  "drivers", (json_int_t)i->drivers, "unknown",
-                                                  (json_int_t)i->unknown, "expected", i->expected,
-                                                  "per_million_km", cp_number_json(i->rate),
-                                                  "interval", interval_json(i->rate_interval)));
+            json_array_append_new(
+                list, json_pack("{s:s, s:s, s:I, s:I, s:f, s:o, s:o, s:o}", "function",
+                                data->risk[k].name, "level", data->risk[k].level, "drivers",
+                                (json_int_t)i->drivers, "unknown", (json_int_t)i->unknown,
+                                "expected", i->expected, "per_million_km", cp_number_json(i->rate),
+                                "interval", interval_json(i->rate_interval), "risk_se_1",
+                                cp_number_json(i->parameters_se_1)));
         }
         json_object_set_new(scopes, CP_SCOPE_TEXT[scope], list);
     }
@@ -92,13 +93,15 @@ static json_t *benefits_json(const cp_study_data *data, const cp_benefit_figures
 {
     json_t *list = json_array();
     for (size_t k = 0; k < data->risk_count; k++)
-        json_array_append_new(
-            list,
-            json_pack("{s:s, s:s, s:f, s:f, s:o, s:o, s:[o, o]}", "function", data->risk[k].name,
-                      "level", data->risk[k].level, "baseline", benefit[k].baseline, "treatment",
-                      benefit[k].treatment, "benefit_1", cp_number_json(benefit[k].benefit_1),
-                      "interval", interval_json(benefit[k].interval), "bounds_1",
-                      cp_number_json(benefit[k].bound[0]), cp_number_json(benefit[k].bound[1])));
+        json_array_append_new(list, json_pack("{s:s, s:s, s:f, s:f, s:o, s:o, s:[o, o], s:o}",
+                                              "function", data->risk[k].name, "level",
+                                              data->risk[k].level, "baseline", benefit[k].baseline,
+                                              "treatment", benefit[k].treatment, "benefit_1",
+                                              cp_number_json(benefit[k].benefit_1), "interval",
+                                              interval_json(benefit[k].interval), "bounds_1",
+                                              cp_number_json(benefit[k].bound[0]),
+                                              cp_number_json(benefit[k].bound[1]), "risk_se_1",
+                                              cp_number_json(benefit[k].parameters_se_1)));
     return list;
 }
 

@@ -205,6 +205,12 @@ static void add_exceedance(const writer *w, int what, const cp_exceedance *e)
     add(w, named(name, "crashes_%.60s_at_most", of), "  at most", 0, counted(e->most));
 }
 
+// What the interval of expected injuries holds.
+static const char *injury_kind(bool with_parameters)
+{
+    return with_parameters ? "bootstrap and risk function" : "bootstrap";
+}
+
 static void add_injuries(const cp_study_data *data, writer w, const cp_injury_figures *injury)
 {
     char name[CP_QUANTITY_TEXT_SIZE], label[CP_QUANTITY_TEXT_SIZE];
@@ -217,7 +223,10 @@ static void add_injuries(const cp_study_data *data, writer w, const cp_injury_fi
             &w, named(name, "expected_injured_per_million_km_%.30s_%.20s", risk->name, risk->level),
             w.scope == CP_SCOPE_INSIDE ? NULL
                                        : named(label, "  %.30s (%.30s)", risk->level, risk->name),
-            1, cp_estimate_of(injury[k].rate), "bootstrap", injury[k].rate_interval);
+            1, cp_estimate_of(injury[k].rate), injury_kind(injury[k].with_parameters),
+            injury[k].rate_interval);
+        add(&w, named(name, "expected_injured_risk_se_1_%.30s_%.20s", risk->name, risk->level),
+            NULL, 3, cp_estimate_of(injury[k].parameters_se_1));
     }
 }
 
@@ -364,7 +373,8 @@ static void add_benefits(const cp_study_data *data, const writer *w,
         const cp_study_risk *risk = &data->risk[k];
         add_interval(&percent, named(name, "benefit_1_%.30s_%.30s", risk->name, risk->level),
                      named(label, "  %.30s (%.30s)", risk->level, risk->name), 1,
-                     cp_estimate_of(benefit[k].benefit_1), "bootstrap", benefit[k].interval);
+                     cp_estimate_of(benefit[k].benefit_1), injury_kind(benefit[k].with_parameters),
+                     benefit[k].interval);
         add(&percent, named(name, "benefit_at_least_1_%.30s_%.30s", risk->name, risk->level),
             "    at least, outside range unknown", 1, bounded(benefit[k].bound[0]));
         add(&percent, named(name, "benefit_at_most_1_%.30s_%.30s", risk->name, risk->level),

@@ -2,6 +2,7 @@
 #include "report/comparison.h"
 
 #include "report/counterfactual.h"
+#include "report/field_comparison.h"
 #include "report/model_uncertainty.h"
 #include "report/slice_sample.h"
 
@@ -452,6 +453,8 @@ cp_status cp_compare(const cp_study_data *data, size_t baseline, cp_slice slice,
     }
     if (status == CP_OK && data->counterfactual)
         status = cp_compare_counterfactual(data, options, comparison, error);
+    if (status == CP_OK && options->field)
+        status = cp_field_compare(data, options, comparison, error);
     return status == CP_OK ? adjust(comparison, error) : status;
 }
 
@@ -460,10 +463,16 @@ void cp_comparison_destroy(cp_comparison *comparison)
     for (int scope = 0; scope < CP_SCOPE_COUNT; scope++)
         for (size_t k = 0; k < comparison->variant_count; k++)
             free(comparison->variant[k].injury[scope]);
-    for (size_t k = 0; k < comparison->contrast_count; k++)
+    for (size_t k = 0; k < comparison->variant_count; k++)
+        free(comparison->variant[k].field);
+    for (size_t k = 0; k < comparison->contrast_count; k++) {
         free(comparison->contrast[k].benefit);
-    for (size_t k = 0; k < comparison->counterfactual_count; k++)
+        free(comparison->contrast[k].field);
+    }
+    for (size_t k = 0; k < comparison->counterfactual_count; k++) {
         free(comparison->counterfactual[k].benefit);
+        free(comparison->counterfactual[k].field);
+    }
     free(comparison->counterfactual);
     free(comparison->variant);
     free(comparison->contrast);

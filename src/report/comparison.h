@@ -103,7 +103,8 @@ typedef struct cp_variant_figures {
     cp_band olc_band[CP_SCOPE_COUNT];                /* of the distribution function */
     cp_injury_figures *injury[CP_SCOPE_COUNT];       /* one a risk function */
     cp_model_part olc_median_model;                  /* of all; sets 0 without an ensemble */
-    size_t without_sets; /* vehicles of that median whose model has none */
+    size_t without_sets;            /* vehicles of that median whose model has none */
+    struct cp_field_variant *field; /* beside a field (report/field_comparison.h); NULL: none */
 } cp_variant_figures;
 
 /* A treatment against the baseline; differences are treatment minus baseline. */
@@ -128,6 +129,7 @@ typedef struct cp_contrast_figures {
     cp_model_part median_model;  /* of the difference of OLC medians; sets 0 without an ensemble */
     cp_model_part delta_model;   /* likewise of Cliff's delta of OLC */
     cp_benefit_figures *benefit; /* one a risk function */
+    struct cp_field_contrast *field; /* weighted as a field; NULL: none */
 } cp_contrast_figures;
 
 /* Paired severity of the pairs: (a) over all valid pairs, avoided = 0 g; (b) conditional on
@@ -161,7 +163,8 @@ typedef struct cp_counterfactual_figures {
     size_t inside_outcome[CP_OUTCOME_NO_OLC];
     size_t inside_treated_outside; /* of these valid pairs: the treated crash lies outside */
     cp_interval inside_share[CP_OUTCOME_NO_OLC];
-    cp_paired inside_olc_g; /* all valid pairs of these, avoided = 0 g */
+    cp_paired inside_olc_g;          /* all valid pairs of these, avoided = 0 g */
+    struct cp_field_contrast *field; /* weighted as a field; NULL: none */
 } cp_counterfactual_figures;
 
 typedef struct cp_comparison {
@@ -182,11 +185,13 @@ cp_interval cp_rate_interval(const cp_variant_figures *figures);
 cp_interval cp_rate_ratio_interval(const cp_contrast_figures *figures);
 
 typedef struct cp_comparison_options {
-    size_t repetitions;                /* of the bootstrap, default 2000 */
-    size_t permutations;               /* of the tests, default 1999 */
-    double above[CP_EXCEEDED_COUNT];   /* headline x of crashes above a severity, >= 0, SI */
-    const cp_model_ensemble *ensemble; /* the model's uncertainty by it; NULL (default), or fewer
-                                          than CP_MODEL_SETS_MIN sets: none; borrowed */
+    size_t repetitions;                   /* of the bootstrap, default 2000 */
+    size_t permutations;                  /* of the tests, default 1999 */
+    double above[CP_EXCEEDED_COUNT];      /* headline x of crashes above a severity, >= 0, SI */
+    const cp_model_ensemble *ensemble;    /* the model's uncertainty by it; NULL (default), or fewer
+                                             than CP_MODEL_SETS_MIN sets: none; borrowed */
+    const struct cp_field_request *field; /* also beside this field; NULL (default): none; borrowed
+                                           */
 } cp_comparison_options;
 
 cp_comparison_options cp_comparison_options_default(void);

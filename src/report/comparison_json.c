@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/comparison_json.h"
+#include "report/field_comparison.h"
 
 #include "report/query_json.h"
 
@@ -185,6 +186,8 @@ static json_t *variant_json(const cp_study_data *data, const cp_comparison *comp
         json_object_set_new(object, "model_uncertainty",
                             json_pack("{s:I, s:o}", "without_sets", (json_int_t)v->without_sets,
                                       "olc_median_g", model_part_json(&v->olc_median_model)));
+    if (v->field)
+        json_object_set_new(object, "field", cp_field_variant_json(data, v->field));
     return object;
 }
 
@@ -241,6 +244,8 @@ static json_t *contrast_json(const cp_study_data *data, const cp_contrast_figure
                             json_pack("{s:o, s:o}", "olc_median_difference_g",
                                       model_part_json(&c->median_model), "olc_cliffs_delta",
                                       model_part_json(&c->delta_model)));
+    if (c->field)
+        json_object_set_new(object, "field", cp_field_contrast_json(data, c->field));
     return object;
 }
 
@@ -302,6 +307,8 @@ static json_t *counterfactual_json(const cp_study_data *data, const cp_counterfa
     if (json_object_size(model) > 0)
         json_object_set_new(object, "model_uncertainty", json_pack("{s:O}", "olc_change_g", model));
     json_decref(model);
+    if (c->field)
+        json_object_set_new(object, "field", cp_field_contrast_json(data, c->field));
     return object;
 }
 

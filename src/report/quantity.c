@@ -2,6 +2,7 @@
 #include "report/quantity.h"
 
 #include "core/units.h"
+#include "report/field_comparison.h"
 #include "store/comparison_rows.h"
 
 #include <math.h>
@@ -58,6 +59,13 @@ static cp_quantity *add(const writer *w, const char *name, const char *label, in
     snprintf(q->name, sizeof q->name, "%s", name);
     snprintf(q->label, sizeof q->label, "%s", label ? label : "");
     return q;
+}
+
+cp_quantity *cp_quantities_add(cp_quantities *list, const char *section, const char *name,
+                               const char *label, int digits, double factor, double value)
+{
+    const writer w = {list, section, -1, factor};
+    return add(&w, name, label, digits, cp_estimate_of(value));
 }
 
 // The row so many from the end.
@@ -302,6 +310,7 @@ void cp_quantities_of_variant(const cp_study_data *data, const cp_variant_figure
         add_injuries(data, w, figures->injury[w.scope]);
     }
     add_model_of_variant(list, figures);
+    cp_field_quantities_of_variant(data, figures->field, list);
 }
 
 // A p-value, or why there is none.
@@ -435,6 +444,7 @@ void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figu
     add_model_of_contrast(list, figures);
     w.factor = 1.0;
     add_benefits(data, &w, figures->benefit);
+    cp_field_quantities_of_contrast(data, figures->field, list);
 }
 
 // ---- figures of counterfactual pairs -----------------------------------------------------------
@@ -529,6 +539,7 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
     }
     w.section = NULL;
     add_benefits(data, &w, figures->benefit);
+    cp_field_quantities_of_contrast(data, figures->field, list);
 }
 
 // ---- into the database

@@ -665,3 +665,42 @@ JOIN crash_vehicle AS x ON x.crash_id = p.crash_id AND x.role = p.role
 JOIN replication AS r ON r.id = c.replication_id
 JOIN scenario AS s ON s.id = r.scenario_id
 JOIN variant AS v ON v.id = r.variant_id;
+
+-- Delta-v of every vehicle without rebound, as field data that are reconstructed from crush have it:
+-- the change to common velocity. rebound_1: how fast the two cars part along their initial relative
+-- velocity, as a share of the closing speed (momentum of both cars; 0 where they slide past each
+-- other); delta_v_without_rebound_m_s = delta_v_m_s / (1 + rebound_1). Where no direction is stored
+-- (rows of earlier versions) the change of velocity is taken to lie along the relative velocity.
+DROP VIEW IF EXISTS delta_v_without_rebound;
+CREATE VIEW delta_v_without_rebound AS
+WITH parting AS (
+    SELECT w.crash_id, w.role, w.variant_id, w.delta_v_m_s,
+           (w.delta_v_m_s + o.delta_v_m_s) / c.closing_speed_m_s
+           * coalesce((w.delta_v_x_m_s * cos(w.velocity_angle_rad)
+                       + w.delta_v_y_m_s * sin(w.velocity_angle_rad)) / nullif(w.delta_v_m_s, 0), 1) - 1
+               AS apart_1
+    FROM crash_vehicle AS w
+    JOIN crash_vehicle AS o ON o.crash_id = w.crash_id AND o.role <> w.role
+    JOIN crash AS c ON c.id = w.crash_id
+)
+SELECT crash_id, role, variant_id, max(0.0, apart_1) AS rebound_1,
+       delta_v_m_s / (1 + max(0.0, apart_1)) AS delta_v_without_rebound_m_s
+FROM parting;
+
+-- The same of treated crashes of the counterfactual design.
+DROP VIEW IF EXISTS counterfactual_delta_v_without_rebound;
+CREATE VIEW counterfactual_delta_v_without_rebound AS
+WITH parting AS (
+    SELECT w.crash_id, w.role, w.variant_id, w.delta_v_m_s,
+           (w.delta_v_m_s + o.delta_v_m_s) / x.closing_speed_m_s
+           * coalesce((w.delta_v_x_m_s * cos(w.velocity_angle_rad)
+                       + w.delta_v_y_m_s * sin(w.velocity_angle_rad)) / nullif(w.delta_v_m_s, 0), 1) - 1
+               AS apart_1
+    FROM counterfactual_vehicle AS w
+    JOIN counterfactual_vehicle AS o
+      ON o.crash_id = w.crash_id AND o.variant_id = w.variant_id AND o.role <> w.role
+    JOIN counterfactual AS x ON x.crash_id = w.crash_id AND x.variant_id = w.variant_id
+)
+SELECT crash_id, role, variant_id, max(0.0, apart_1) AS rebound_1,
+       delta_v_m_s / (1 + max(0.0, apart_1)) AS delta_v_without_rebound_m_s
+FROM parting;

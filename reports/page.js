@@ -588,7 +588,7 @@
   }
 
   const benefitFigure = figure("figure-benefit", "Benefit in expected injured drivers",
-    () => "Per cent fewer injured drivers per vehicle-km than with the baseline (counterfactual: of the same crashes, avoided = 0), by risk function, 95 % bootstrap over replications (none where crashes are too few). Both drivers of the frontal crashes; functions of delta-v, none of OLC. The table has what is left when severities outside the validated range count as unknown.",
+    () => "Per cent fewer injured drivers per vehicle-km than with the baseline (counterfactual: of the same crashes, avoided = 0), by risk function, 95 % bootstrap over replications (none where crashes are too few), joined with what the coefficients of the function leave open. NASS-CDS: belted drivers of the vehicles struck on their front, delta-v without rebound; no function is of OLC. The table has what is left when severities outside the validated range count as unknown.",
     function (svg, width) {
       const rows = benefits().filter(b => !missing(b.benefit_1)), margin = { top: 10, right: 16, bottom: 48, left: 16 }, band = 40, h = band * rows.length, w = width - margin.left - margin.right;
       const low = d3.min(rows, b => d3.min([b.benefit_1, missing(b.interval.low) ? b.benefit_1 : b.interval.low])) || 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/reference.h"
 
-#include "calibrate/csv_row.h"
+#include "core/csv_row.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/yaml_file.h"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/scorecard.h"
 
-#include "calibrate/csv_table.h"
 #include "calibrate/parallel.h"
 #include "calibrate/suite_case.h"
+#include "core/csv_table.h"
 #include "crash/validity.h"
 
 #include <gsl/gsl_sort.h>

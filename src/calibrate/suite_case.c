@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/suite_case.h"
 
-#include "calibrate/csv_table.h"
 #include "calibrate/reference.h"
+#include "core/csv_table.h"
 #include "core/file.h"
 #include "core/units.h"
 #include "crash/shipped_vehicle.h"

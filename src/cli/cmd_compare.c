@@ -2,10 +2,12 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "cli/comparison_table.h"
+#include "cli/field_output.h"
 #include "core/log.h"
 #include "report/answer.h"
 #include "report/caveats.h"
 #include "report/comparison_json.h"
+#include "report/field_comparison.h"
 #include "report/grouping.h"
 #include "report/network_background.h"
 #include "report/quantity.h"
@@ -23,10 +25,21 @@ typedef struct arguments {
     double above[CP_EXCEEDED_COUNT]; /* OLC in g, delta-v in m/s */
     bool no_store;
     bool model_uncertainty;
+    const char *field;
+    const char *field_margins;
+    double field_cap;
     cp_format format;
 } arguments;
 
-enum { KEY_NO_STORE = 256, KEY_ABOVE_OLC, KEY_ABOVE_DELTA_V, KEY_MODEL_UNCERTAINTY };
+enum {
+    KEY_NO_STORE = 256,
+    KEY_ABOVE_OLC,
+    KEY_ABOVE_DELTA_V,
+    KEY_MODEL_UNCERTAINTY,
+    KEY_FIELD,
+    KEY_FIELD_MARGINS,
+    KEY_FIELD_CAP
+};
 
 static const struct argp_option OPTIONS[] = {
     {"baseline", 'b', "VARIANT", 0, "compare with this variant (default: the study's baseline)", 0},
@@ -45,6 +58,15 @@ static const struct argp_option OPTIONS[] = {
      "also by every parameter set of the vehicle models' ensembles: what of the uncertainty of OLC "
      "comes from replications and what from the model",
      0},
+    {"field", KEY_FIELD, "NAME|FILE", 0,
+     "also beside crashes of the field: nass (NASS-CDS, inside the program) or a table of the same "
+     "form (db/field/README.md); distances, and all figures with the field's mix",
+     0},
+    {"field-margins", KEY_FIELD_MARGINS, "LIST", 0,
+     "what the mix is of, for treatments too: some of crash_type,delta_v,overlap (default: all, "
+     "where treatments are compared without delta_v)",
+     0},
+    {"field-cap", KEY_FIELD_CAP, "X", 0, "no weight is above X times the mean (default 5)", 0},
     {"no-store", KEY_NO_STORE, NULL, 0, "leave the tables comparison and comparison_figure alone",
      0},
     {0},
@@ -76,6 +98,15 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         a->above[CP_EXCEEDED_DELTA_V] =
             cp_args_number(state, "--above-delta-v", argument, 0.0, 400.0, "km/h") / 3.6;
         return 0;
+    case KEY_FIELD:
+        a->field = argument;
+        return 0;
+    case KEY_FIELD_MARGINS:
+        a->field_margins = argument;
+        return 0;
+    case KEY_FIELD_CAP:
+        a->field_cap = cp_args_number(state, "--field-cap", argument, 1.1, 1e6, "");
+        return 0;
     case KEY_NO_STORE:
         a->no_store = true;
         return 0;
@@ -90,6 +121,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_END:
         if (!a->db_path)
             argp_error(state, "which database? DB is missing");
+        if (!a->field && (a->field_margins || a->field_cap > 0.0))
+            argp_error(state, "--field-margins and --field-cap go with --field");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -117,6 +150,10 @@ static const struct argp ARGP = {
            "With --model-uncertainty all crashes count by one parameter set after the other, as a "
            "set that is wrong is wrong for all of them; the half-width over the sets (Student's t) "
            "and that of the replications are combined as the root of the sum of their squares. "
+           "With --field the baseline's frontally struck vehicles are weighted so that crash type, "
+           "delta-v without rebound and overlap have the field's margins (raking), found anew in "
+           "every resample; what the field has and the study never makes stays missing, and is "
+           "said. "
            "Rates are conditional on the "
            "study's driver errors. OLC describes "
            "the crash pulse of a car; injuries come from the table risk_function, which is yours "
@@ -125,6 +162,7 @@ static const struct argp ARGP = {
            "Examples:\n"
            "  crashpulse compare demo.db\n"
            "  crashpulse compare demo.db --baseline aeb --format json\n"
+           "  crashpulse compare demo.db --field nass\n"
            "  crashpulse compare demo.db --by crash_type --where \"closing_speed_m_s > 10\"\n"
            "  crashpulse sql demo.db \"SELECT * FROM comparison_figure WHERE against <> ''\"\n",
     .children = CHILDREN,
@@ -140,8 +178,12 @@ typedef struct job {
     cp_caveats caveats;
     cp_comparison *comparison; /* one a group */
     char **answer;
+    char **field_words; /* one a group; NULL without a field */
     cp_comparison_options options;
     cp_model_ensemble ensemble;
+    cp_field_table field_table;
+    cp_field_study field_study;
+    cp_field_request field;
 } job;
 
 static void job_destroy(job *j)
@@ -151,13 +193,18 @@ static void job_destroy(job *j)
             cp_comparison_destroy(&j->comparison[k]);
         if (j->answer)
             free(j->answer[k]);
+        if (j->field_words)
+            free(j->field_words[k]);
     }
+    free(j->field_words);
     free(j->comparison);
     free(j->answer);
     cp_grouping_destroy(&j->grouping);
     cp_network_backgrounds_destroy(&j->backgrounds);
     cp_caveats_destroy(&j->caveats);
     cp_model_ensemble_destroy(&j->ensemble);
+    cp_field_table_destroy(&j->field_table);
+    cp_field_study_destroy(&j->field_study);
     cp_study_data_destroy(&j->data);
     cp_store_close(j->store);
 }
@@ -175,11 +222,49 @@ static cp_status read_ensemble(job *j, cp_error *error)
     return status;
 }
 
+// The names of --field-margins.
+static cp_status read_margins(const char *list, bool margin[CP_FIELD_MARGIN_COUNT], cp_error *error)
+{
+    for (int m = 0; m < CP_FIELD_MARGIN_COUNT; m++)
+        margin[m] = list == NULL;
+    while (list && *list) {
+        size_t length = strcspn(list, ",");
+        int m = 0;
+        while (m < CP_FIELD_MARGIN_COUNT && (strlen(CP_FIELD_MARGIN_TEXT[m]) != length ||
+                                             strncmp(list, CP_FIELD_MARGIN_TEXT[m], length) != 0))
+            m++;
+        if (m == CP_FIELD_MARGIN_COUNT)
+            return cp_fail(error, CP_BAD_INPUT,
+                           "--field-margins: must be a list of crash_type, delta_v and overlap, "
+                           "found '%.*s'",
+                           (int)length, list);
+        margin[m] = true;
+        list += length + (list[length] == ',');
+    }
+    return CP_OK;
+}
+
+static cp_status read_field(job *j, cp_error *error)
+{
+    cp_status status = read_margins(j->a.field_margins, j->field.margin, error);
+    if (status == CP_OK)
+        status = cp_field_table_read(j->a.field, &j->field_table, error);
+    if (status == CP_OK)
+        status = cp_field_study_read(j->store, &j->data, &j->field_study, error);
+    j->field.table = &j->field_table;
+    j->field.study = &j->field_study;
+    j->field.exact = j->a.field_margins != NULL;
+    j->field.cap = j->a.field_cap > 0.0 ? j->a.field_cap : CP_FIELD_CAP;
+    j->options.field = &j->field;
+    return status;
+}
+
 static cp_status compare_groups(job *j, size_t baseline, cp_error *error)
 {
     j->comparison = calloc(j->grouping.count, sizeof *j->comparison);
     j->answer = calloc(j->grouping.count, sizeof *j->answer);
-    if (!j->comparison || !j->answer)
+    j->field_words = calloc(j->grouping.count, sizeof *j->field_words);
+    if (!j->comparison || !j->answer || !j->field_words)
         return cp_fail_memory(error, "a comparison");
     cp_status status = CP_OK;
     for (size_t k = 0; k < j->grouping.count && status == CP_OK; k++) {
@@ -187,6 +272,8 @@ static cp_status compare_groups(job *j, size_t baseline, cp_error *error)
                             &j->comparison[k], error);
         if (status == CP_OK)
             status = cp_comparison_answer(&j->data, &j->comparison[k], &j->answer[k], error);
+        if (status == CP_OK && j->options.field)
+            status = cp_field_words(&j->comparison[k], &j->field, &j->field_words[k], error);
     }
     return status;
 }
@@ -196,6 +283,8 @@ static json_t *group_json(const job *j, size_t k)
     json_t *result = cp_comparison_json(&j->data, &j->comparison[k]);
     if (j->a.by)
         json_object_set_new(result, "by_value", json_string(j->grouping.name[k]));
+    if (j->field_words && j->field_words[k])
+        json_object_set_new(result, "field_words", json_string(j->field_words[k]));
     if (json_object_set_new(result, "study", json_string(j->data.name)) != 0 ||
         json_object_set_new(result, "background", cp_network_backgrounds_json(&j->backgrounds)) !=
             0 ||
@@ -242,6 +331,10 @@ static cp_status print_tables(const job *j, cp_error *error)
             snprintf(heading + used, sizeof heading - (size_t)used, ", where %s", j->a.where);
         status = cp_comparison_print_table(&j->data, &j->comparison[k], heading, j->answer[k],
                                            stdout, error);
+        if (status == CP_OK && j->options.field) {
+            status = cp_field_print_table(&j->comparison[k], stdout, error);
+            cp_comparison_print_paragraph(j->field_words[k], stdout);
+        }
     }
 
     // Below, once: what of it all is not the drivers' doing.
@@ -302,6 +395,8 @@ cp_status cmd_compare(int argc, char **argv, cp_error *error)
         status = cp_study_data_variant(&j.data, j.a.baseline, &baseline, error);
     if (status == CP_OK && j.a.model_uncertainty)
         status = read_ensemble(&j, error);
+    if (status == CP_OK && j.a.field)
+        status = read_field(&j, error);
     if (status == CP_OK && j.data.unfinished > 0)
         cp_log_warning("replications that are not finished and not counted: %zu",
                        j.data.unfinished);

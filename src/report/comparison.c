@@ -2,6 +2,7 @@
 #include "report/comparison.h"
 
 #include "report/counterfactual.h"
+#include "report/field_comparison.h"
 #include "report/model_uncertainty.h"
 #include "report/slice_sample.h"
 
@@ -147,16 +148,22 @@ static cp_status figure_injuries(const cp_study_data *data, const cp_replication
     for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
         for (size_t k = 0; k < data->risk_count && status == CP_OK; k++) {
             cp_injury_figures *injury = &figures->injury[scope][k];
-            cp_slice_injuries(data, set, slice, scope, &data->risk[k], expected, &injury->drivers,
-                              &injury->unknown);
-            for (size_t c = 0; c < set->count; c++)
-                injury->expected += expected[c];
+            cp_injury_sum sum;
+            const cp_risk_function *function = &data->risk[k].function;
+            cp_slice_injuries(data, set, slice, scope, &data->risk[k], expected, &sum);
+            injury->drivers = sum.drivers;
+            injury->unknown = sum.unknown;
+            injury->expected = sum.expected;
+            injury->with_parameters = function->has_covariance;
+            injury->parameters_se_1 = sqrt(cp_risk_variance(function, sum.gradient)) / sum.expected;
             cp_exposure exposure = {set->count, expected, set->vehicle_km};
             injury->rate = cp_rate(&exposure) * CP_RATE_PER_KM;
             status = cp_rate_bootstrap(&exposure, set->stratum, data->seed, &injury->rate_interval,
                                        error);
             injury->rate_interval.low *= CP_RATE_PER_KM;
             injury->rate_interval.high *= CP_RATE_PER_KM;
+            injury->rate_interval = cp_risk_widened(injury->rate, injury->rate_interval,
+                                                    injury->parameters_se_1, function->freedom);
         }
     }
     free(expected);
@@ -291,15 +298,17 @@ static cp_status contrast_benefit(const cp_study_data *data, const cp_replicatio
                                   double *expected[2], cp_benefit_figures *benefit, cp_error *error)
 {
     cp_exposure exposure[2];
+    cp_injury_sum sum[2];
     double known[2], open[2];
+    const cp_risk_function *function = &data->risk[risk].function;
     for (int g = 0; g < 2; g++) {
-        size_t drivers, unknown, inside;
+        cp_injury_sum inside;
         cp_slice_injuries(data, &set[g], slice, CP_SCOPE_INSIDE, &data->risk[risk], expected[g],
-                          &inside, NULL);
+                          &inside);
         known[g] = total(expected[g], set[g].count);
         cp_slice_injuries(data, &set[g], slice, CP_SCOPE_ALL, &data->risk[risk], expected[g],
-                          &drivers, &unknown);
-        open[g] = (double)(drivers + unknown - inside);
+                          &sum[g]);
+        open[g] = (double)(sum[g].drivers + sum[g].unknown - inside.drivers);
         exposure[g] = (cp_exposure){set[g].count, expected[g], set[g].vehicle_km};
     }
     cp_interval ratio;
@@ -309,6 +318,10 @@ static cp_status contrast_benefit(const cp_study_data *data, const cp_replicatio
         1.0 - cp_rate_ratio(&exposure[0], &exposure[1], set[0].stratum, set[1].stratum);
     cp_status status =
         cp_rate_ratio_bootstrap(&exposure[0], &exposure[1], resampling, &ratio, error);
+    benefit->with_parameters = function->has_covariance;
+    benefit->parameters_se_1 = cp_injury_ratio_se(function, &sum[0], &sum[1]);
+    ratio = cp_risk_widened(1.0 - benefit->benefit_1, ratio, benefit->parameters_se_1,
+                            function->freedom);
     benefit->interval = (cp_interval){ratio.status, 1.0 - ratio.high, 1.0 - ratio.low};
 
     // At worst every unknown driver of the treatment is injured and none of the baseline.
@@ -440,6 +453,8 @@ cp_status cp_compare(const cp_study_data *data, size_t baseline, cp_slice slice,
     }
     if (status == CP_OK && data->counterfactual)
         status = cp_compare_counterfactual(data, options, comparison, error);
+    if (status == CP_OK && options->field)
+        status = cp_field_compare(data, options, comparison, error);
     return status == CP_OK ? adjust(comparison, error) : status;
 }
 
@@ -448,10 +463,16 @@ void cp_comparison_destroy(cp_comparison *comparison)
     for (int scope = 0; scope < CP_SCOPE_COUNT; scope++)
         for (size_t k = 0; k < comparison->variant_count; k++)
             free(comparison->variant[k].injury[scope]);
-    for (size_t k = 0; k < comparison->contrast_count; k++)
+    for (size_t k = 0; k < comparison->variant_count; k++)
+        free(comparison->variant[k].field);
+    for (size_t k = 0; k < comparison->contrast_count; k++) {
         free(comparison->contrast[k].benefit);
-    for (size_t k = 0; k < comparison->counterfactual_count; k++)
+        free(comparison->contrast[k].field);
+    }
+    for (size_t k = 0; k < comparison->counterfactual_count; k++) {
         free(comparison->counterfactual[k].benefit);
+        free(comparison->counterfactual[k].field);
+    }
     free(comparison->counterfactual);
     free(comparison->variant);
     free(comparison->contrast);

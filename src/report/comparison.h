@@ -51,14 +51,18 @@ typedef enum cp_slice_quantity {
 /* Those that are compared: the first ones. */
 #define CP_QUANTITIES_COMPARED 3
 
-/* Expected injured drivers by one risk function: the sum of the probabilities over both drivers of
- * the frontal crashes, or over those whose vehicle is inside validity. */
+/* Expected injured drivers by one risk function: the sum of the probabilities over the drivers it
+ * is of in frontal crashes (those struck on their front, or both), or over those whose vehicle is
+ * inside validity. Intervals carry what is uncertain of the function where its covariance is known.
+ */
 typedef struct cp_injury_figures {
     size_t drivers; /* with a known predictor */
     size_t unknown; /* without */
     double expected;
     double rate; /* expected per 10^6 veh-km; NAN without exposure */
     cp_interval rate_interval;
+    bool with_parameters;   /* the function has a covariance */
+    double parameters_se_1; /* relative standard error it leaves; 0 without, NAN of nothing */
 } cp_injury_figures;
 
 /* Benefit: 1 - rate of the treatment over rate of the baseline, of expected injured drivers per
@@ -68,6 +72,8 @@ typedef struct cp_benefit_figures {
     double treatment;
     double benefit_1; /* NAN without any expected with the baseline */
     cp_interval interval;
+    bool with_parameters;   /* the function has a covariance */
+    double parameters_se_1; /* relative standard error it leaves to 1 - benefit */
     double bound[2]; /* of the benefit, lower and upper, were the risk of each vehicle outside
                         validity, or without a predictor, anything from 0 to 1; -INFINITY; NAN, also
                         of too few crashes for an interval */
@@ -97,7 +103,8 @@ typedef struct cp_variant_figures {
     cp_band olc_band[CP_SCOPE_COUNT];                /* of the distribution function */
     cp_injury_figures *injury[CP_SCOPE_COUNT];       /* one a risk function */
     cp_model_part olc_median_model;                  /* of all; sets 0 without an ensemble */
-    size_t without_sets; /* vehicles of that median whose model has none */
+    size_t without_sets;            /* vehicles of that median whose model has none */
+    struct cp_field_variant *field; /* beside a field (report/field_comparison.h); NULL: none */
 } cp_variant_figures;
 
 /* A treatment against the baseline; differences are treatment minus baseline. */
@@ -122,6 +129,7 @@ typedef struct cp_contrast_figures {
     cp_model_part median_model;  /* of the difference of OLC medians; sets 0 without an ensemble */
     cp_model_part delta_model;   /* likewise of Cliff's delta of OLC */
     cp_benefit_figures *benefit; /* one a risk function */
+    struct cp_field_contrast *field; /* weighted as a field; NULL: none */
 } cp_contrast_figures;
 
 /* Paired severity of the pairs: (a) over all valid pairs, avoided = 0 g; (b) conditional on
@@ -156,7 +164,8 @@ typedef struct cp_counterfactual_figures {
     size_t inside_outcome[CP_OUTCOME_NO_OLC];
     size_t inside_treated_outside; /* of these valid pairs: the treated crash lies outside */
     cp_interval inside_share[CP_OUTCOME_NO_OLC];
-    cp_paired inside_olc_g; /* all valid pairs of these, avoided = 0 g */
+    cp_paired inside_olc_g;          /* all valid pairs of these, avoided = 0 g */
+    struct cp_field_contrast *field; /* weighted as a field; NULL: none */
 } cp_counterfactual_figures;
 
 typedef struct cp_comparison {
@@ -177,11 +186,13 @@ cp_interval cp_rate_interval(const cp_variant_figures *figures);
 cp_interval cp_rate_ratio_interval(const cp_contrast_figures *figures);
 
 typedef struct cp_comparison_options {
-    size_t repetitions;                /* of the bootstrap, default 2000 */
-    size_t permutations;               /* of the tests, default 1999 */
-    double above[CP_EXCEEDED_COUNT];   /* headline x of crashes above a severity, >= 0, SI */
-    const cp_model_ensemble *ensemble; /* the model's uncertainty by it; NULL (default), or fewer
-                                          than CP_MODEL_SETS_MIN sets: none; borrowed */
+    size_t repetitions;                   /* of the bootstrap, default 2000 */
+    size_t permutations;                  /* of the tests, default 1999 */
+    double above[CP_EXCEEDED_COUNT];      /* headline x of crashes above a severity, >= 0, SI */
+    const cp_model_ensemble *ensemble;    /* the model's uncertainty by it; NULL (default), or fewer
+                                             than CP_MODEL_SETS_MIN sets: none; borrowed */
+    const struct cp_field_request *field; /* also beside this field; NULL (default): none; borrowed
+                                           */
 } cp_comparison_options;
 
 cp_comparison_options cp_comparison_options_default(void);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/comparison_json.h"
+#include "report/field_comparison.h"
 
 #include "report/query_json.h"
 
@@ -76,12 +77,13 @@ static json_t *injuries_json(const cp_study_data *data, const cp_variant_figures
         json_t *list = json_array();
         for (size_t k = 0; k < data->risk_count; k++) {
             const cp_injury_figures *i = &v->injury[scope][k];
-            json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:I, s:f, s:o, s:o}", "function",
-                                                  data->risk[k].name, "level", data->risk[k].level,
-                                                  "drivers", (json_int_t)i->drivers, "unknown",
-                                                  (json_int_t)i->unknown, "expected", i->expected,
-                                                  "per_million_km", cp_number_json(i->rate),
-                                                  "interval", interval_json(i->rate_interval)));
+            json_array_append_new(
+                list, json_pack("{s:s, s:s, s:I, s:I, s:f, s:o, s:o, s:o}", "function",
+                                data->risk[k].name, "level", data->risk[k].level, "drivers",
+                                (json_int_t)i->drivers, "unknown", (json_int_t)i->unknown,
+                                "expected", i->expected, "per_million_km", cp_number_json(i->rate),
+                                "interval", interval_json(i->rate_interval), "risk_se_1",
+                                cp_number_json(i->parameters_se_1)));
         }
         json_object_set_new(scopes, CP_SCOPE_TEXT[scope], list);
     }
@@ -92,13 +94,15 @@ static json_t *benefits_json(const cp_study_data *data, const cp_benefit_figures
 {
     json_t *list = json_array();
     for (size_t k = 0; k < data->risk_count; k++)
-        json_array_append_new(
-            list,
-            json_pack("{s:s, s:s, s:f, s:f, s:o, s:o, s:[o, o]}", "function", data->risk[k].name,
-                      "level", data->risk[k].level, "baseline", benefit[k].baseline, "treatment",
-                      benefit[k].treatment, "benefit_1", cp_number_json(benefit[k].benefit_1),
-                      "interval", interval_json(benefit[k].interval), "bounds_1",
-                      cp_number_json(benefit[k].bound[0]), cp_number_json(benefit[k].bound[1])));
+        json_array_append_new(list, json_pack("{s:s, s:s, s:f, s:f, s:o, s:o, s:[o, o], s:o}",
+                                              "function", data->risk[k].name, "level",
+                                              data->risk[k].level, "baseline", benefit[k].baseline,
+                                              "treatment", benefit[k].treatment, "benefit_1",
+                                              cp_number_json(benefit[k].benefit_1), "interval",
+                                              interval_json(benefit[k].interval), "bounds_1",
+                                              cp_number_json(benefit[k].bound[0]),
+                                              cp_number_json(benefit[k].bound[1]), "risk_se_1",
+                                              cp_number_json(benefit[k].parameters_se_1)));
     return list;
 }
 
@@ -182,6 +186,8 @@ static json_t *variant_json(const cp_study_data *data, const cp_comparison *comp
         json_object_set_new(object, "model_uncertainty",
                             json_pack("{s:I, s:o}", "without_sets", (json_int_t)v->without_sets,
                                       "olc_median_g", model_part_json(&v->olc_median_model)));
+    if (v->field)
+        json_object_set_new(object, "field", cp_field_variant_json(data, v->field));
     return object;
 }
 
@@ -238,6 +244,8 @@ static json_t *contrast_json(const cp_study_data *data, const cp_contrast_figure
                             json_pack("{s:o, s:o}", "olc_median_difference_g",
                                       model_part_json(&c->median_model), "olc_cliffs_delta",
                                       model_part_json(&c->delta_model)));
+    if (c->field)
+        json_object_set_new(object, "field", cp_field_contrast_json(data, c->field));
     return object;
 }
 
@@ -300,6 +308,8 @@ static json_t *counterfactual_json(const cp_study_data *data, const cp_counterfa
     if (json_object_size(model) > 0)
         json_object_set_new(object, "model_uncertainty", json_pack("{s:O}", "olc_change_g", model));
     json_decref(model);
+    if (c->field)
+        json_object_set_new(object, "field", cp_field_contrast_json(data, c->field));
     return object;
 }
 

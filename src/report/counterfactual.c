@@ -190,29 +190,48 @@ static cp_status figure_model(const pairs *p, int which, cp_counterfactual_figur
     return status;
 }
 
+// Risk of a driver of a pair, of the baseline's crash or of what became of it; 0 where the function
+// is not of this driver. NAN: unknown.
+static double risk_of(const pairs *p, const cp_study_pair *pair, const cp_study_risk *risk,
+                      size_t role, int side, double *gradient)
+{
+    const cp_study_vehicle *vehicle = &p->data->vehicle[2 * pair->crash + role];
+    const cp_study_crash *crash = &p->data->crash[pair->crash];
+    bool frontal = side ? pair->treated_frontal[role] : vehicle->frontal;
+    if ((side && pair->outcome == CP_OUTCOME_AVOIDED) || (risk->frontal_only && !frontal))
+        return 0.0;
+    double predictor =
+        side ? pair->predictor[role][risk->predictor] : vehicle->predictor[risk->predictor];
+    const char *type = side ? pair->treated_type : p->data->crash_type[crash->crash_type];
+    return cp_risk_add(&risk->function, predictor, type, 1.0, gradient);
+}
+
 // Expected injured drivers of the baseline's crashes and of what became of them, by replication.
 // A pair without a known probability on either side is left out of both.
-static void sum_injuries(const pairs *p, const cp_study_risk *risk, double *baseline,
-                         double *treated)
+static void sum_injuries(const pairs *p, const cp_study_risk *risk, double *expected[2],
+                         cp_injury_sum sum[2])
 {
-    for (size_t c = 0; c < p->set->count; c++)
-        baseline[c] = treated[c] = 0.0;
+    for (int side = 0; side < 2; side++) {
+        sum[side] = (cp_injury_sum){0};
+        for (size_t c = 0; c < p->set->count; c++)
+            expected[side][c] = 0.0;
+    }
     for (size_t k = 0; k < p->count; k++) {
         const cp_study_pair *pair = p->pair[k];
+        double own[2] = {0.0, 0.0}, gradient[2][CP_RISK_PARAMETERS_MAX] = {{0.0}, {0.0}};
         if (!valid(pair))
             continue;
-        double before = 0.0, after = 0.0;
-        for (size_t role = 0; role < 2; role++) {
-            const cp_study_vehicle *vehicle = &p->data->vehicle[2 * pair->crash + role];
-            before += cp_risk_probability(&risk->function, vehicle->predictor[risk->predictor]);
-            if (pair->outcome != CP_OUTCOME_AVOIDED)
-                after +=
-                    cp_risk_probability(&risk->function, pair->predictor[role][risk->predictor]);
-        }
-        if (isnan(before) || isnan(after))
+        for (size_t role = 0; role < 2; role++)
+            for (int side = 0; side < 2; side++)
+                own[side] += risk_of(p, pair, risk, role, side, gradient[side]);
+        if (isnan(own[0]) || isnan(own[1]))
             continue;
-        baseline[p->cluster[k]] += before;
-        treated[p->cluster[k]] += after;
+        for (int side = 0; side < 2; side++) {
+            expected[side][p->cluster[k]] += own[side];
+            sum[side].expected += own[side];
+            for (size_t c = 0; c < CP_RISK_PARAMETERS_MAX; c++)
+                sum[side].gradient[c] += gradient[side][c];
+        }
     }
 }
 
@@ -226,18 +245,16 @@ static void bound_benefit(const pairs *p, const cp_study_risk *risk, double boun
             continue;
         for (size_t role = 0; role < 2; role++) {
             const cp_study_vehicle *vehicle = &p->data->vehicle[2 * pair->crash + role];
-            double risks[2] = {
-                cp_risk_probability(&risk->function, vehicle->predictor[risk->predictor]),
-                cp_risk_probability(&risk->function, pair->predictor[role][risk->predictor])};
-            bool is_known[2] = {vehicle->validity == 0, pair->treated_inside[role]};
-            if (pair->outcome == CP_OUTCOME_AVOIDED) {
-                risks[1] = 0.0;
-                is_known[1] = true;
-            }
+            bool is_known[2] = {vehicle->validity == 0,
+                                pair->treated_inside[role] || pair->outcome == CP_OUTCOME_AVOIDED};
+            bool counted[2] = {!risk->frontal_only || vehicle->frontal,
+                               !risk->frontal_only || pair->treated_frontal[role] ||
+                                   pair->outcome == CP_OUTCOME_AVOIDED};
             for (int side = 0; side < 2; side++) {
-                bool counts = is_known[side] && !isnan(risks[side]);
-                known[side] += counts ? risks[side] : 0.0;
-                open[side] += !counts;
+                double own = risk_of(p, pair, risk, role, side, NULL);
+                bool counts = is_known[side] && !isnan(own);
+                known[side] += counts ? own : 0.0;
+                open[side] += !counts && counted[side];
             }
         }
     }
@@ -247,29 +264,35 @@ static void bound_benefit(const pairs *p, const cp_study_risk *risk, double boun
 
 static cp_status figure_benefit(const pairs *p, cp_counterfactual_figures *figures, cp_error *error)
 {
-    double *baseline = calloc(p->set->count + 1, sizeof *baseline);
-    double *treated = calloc(p->set->count + 1, sizeof *treated);
+    double *expected[2] = {calloc(p->set->count + 1, sizeof(double)),
+                           calloc(p->set->count + 1, sizeof(double))};
     cp_status status = CP_OK;
-    if (!baseline || !treated)
+    if (!expected[0] || !expected[1])
         status = cp_fail_memory(error, "expected injuries");
     for (size_t k = 0; k < p->data->risk_count && status == CP_OK; k++) {
         cp_benefit_figures *benefit = &figures->benefit[k];
-        sum_injuries(p, &p->data->risk[k], baseline, treated);
-        cp_exposure ratio = {p->set->count, treated, baseline};
+        const cp_risk_function *function = &p->data->risk[k].function;
+        cp_injury_sum sum[2];
+        sum_injuries(p, &p->data->risk[k], expected, sum);
+        cp_exposure ratio = {p->set->count, expected[1], expected[0]};
         for (size_t c = 0; c < p->set->count; c++) {
-            benefit->baseline += baseline[c];
-            benefit->treatment += treated[c];
+            benefit->baseline += expected[0][c];
+            benefit->treatment += expected[1][c];
         }
         benefit->benefit_1 = 1.0 - cp_rate(&ratio);
         cp_interval interval;
         status = cp_rate_bootstrap(&ratio, p->set->stratum, p->data->seed, &interval, error);
+        benefit->with_parameters = function->has_covariance;
+        benefit->parameters_se_1 = cp_injury_ratio_se(function, &sum[0], &sum[1]);
+        interval = cp_risk_widened(1.0 - benefit->benefit_1, interval, benefit->parameters_se_1,
+                                   function->freedom);
         benefit->interval = (cp_interval){interval.status, 1.0 - interval.high, 1.0 - interval.low};
         bound_benefit(p, &p->data->risk[k], benefit->bound);
         if (interval.status == CP_INTERVAL_TOO_FEW_CRASHES)
             benefit->bound[0] = benefit->bound[1] = NAN;
     }
-    free(baseline);
-    free(treated);
+    free(expected[0]);
+    free(expected[1]);
     return status;
 }
 

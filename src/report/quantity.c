@@ -2,6 +2,7 @@
 #include "report/quantity.h"
 
 #include "core/units.h"
+#include "report/field_comparison.h"
 #include "store/comparison_rows.h"
 
 #include <math.h>
@@ -58,6 +59,13 @@ static cp_quantity *add(const writer *w, const char *name, const char *label, in
     snprintf(q->name, sizeof q->name, "%s", name);
     snprintf(q->label, sizeof q->label, "%s", label ? label : "");
     return q;
+}
+
+cp_quantity *cp_quantities_add(cp_quantities *list, const char *section, const char *name,
+                               const char *label, int digits, double factor, double value)
+{
+    const writer w = {list, section, -1, factor};
+    return add(&w, name, label, digits, cp_estimate_of(value));
 }
 
 // The row so many from the end.
@@ -205,6 +213,12 @@ static void add_exceedance(const writer *w, int what, const cp_exceedance *e)
     add(w, named(name, "crashes_%.60s_at_most", of), "  at most", 0, counted(e->most));
 }
 
+// What the interval of expected injuries holds.
+static const char *injury_kind(bool with_parameters)
+{
+    return with_parameters ? "bootstrap and risk function" : "bootstrap";
+}
+
 static void add_injuries(const cp_study_data *data, writer w, const cp_injury_figures *injury)
 {
     char name[CP_QUANTITY_TEXT_SIZE], label[CP_QUANTITY_TEXT_SIZE];
@@ -217,7 +231,10 @@ static void add_injuries(const cp_study_data *data, writer w, const cp_injury_fi
             &w, named(name, "expected_injured_per_million_km_%.30s_%.20s", risk->name, risk->level),
             w.scope == CP_SCOPE_INSIDE ? NULL
                                        : named(label, "  %.30s (%.30s)", risk->level, risk->name),
-            1, cp_estimate_of(injury[k].rate), "bootstrap", injury[k].rate_interval);
+            1, cp_estimate_of(injury[k].rate), injury_kind(injury[k].with_parameters),
+            injury[k].rate_interval);
+        add(&w, named(name, "expected_injured_risk_se_1_%.30s_%.20s", risk->name, risk->level),
+            NULL, 3, cp_estimate_of(injury[k].parameters_se_1));
     }
 }
 
@@ -293,6 +310,7 @@ void cp_quantities_of_variant(const cp_study_data *data, const cp_variant_figure
         add_injuries(data, w, figures->injury[w.scope]);
     }
     add_model_of_variant(list, figures);
+    cp_field_quantities_of_variant(data, figures->field, list);
 }
 
 // A p-value, or why there is none.
@@ -364,7 +382,8 @@ static void add_benefits(const cp_study_data *data, const writer *w,
         const cp_study_risk *risk = &data->risk[k];
         add_interval(&percent, named(name, "benefit_1_%.30s_%.30s", risk->name, risk->level),
                      named(label, "  %.30s (%.30s)", risk->level, risk->name), 1,
-                     cp_estimate_of(benefit[k].benefit_1), "bootstrap", benefit[k].interval);
+                     cp_estimate_of(benefit[k].benefit_1), injury_kind(benefit[k].with_parameters),
+                     benefit[k].interval);
         add(&percent, named(name, "benefit_at_least_1_%.30s_%.30s", risk->name, risk->level),
             "    at least, outside range unknown", 1, bounded(benefit[k].bound[0]));
         add(&percent, named(name, "benefit_at_most_1_%.30s_%.30s", risk->name, risk->level),
@@ -425,6 +444,7 @@ void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figu
     add_model_of_contrast(list, figures);
     w.factor = 1.0;
     add_benefits(data, &w, figures->benefit);
+    cp_field_quantities_of_contrast(data, figures->field, list);
 }
 
 // ---- figures of counterfactual pairs -----------------------------------------------------------
@@ -521,6 +541,7 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
     }
     w.section = NULL;
     add_benefits(data, &w, figures->benefit);
+    cp_field_quantities_of_contrast(data, figures->field, list);
 }
 
 // ---- into the database

@@ -34,6 +34,12 @@ typedef struct cp_quantities {
 
 void cp_quantities_destroy(cp_quantities *list);
 
+/* Append one figure, for files of figures beside this one: without scope and interval, exactly
+ * value, factor the table's unit over the value's. label "": not in the table. Valid until the next
+ * is appended; what is set in it after a failed addition is lost. */
+cp_quantity *cp_quantities_add(cp_quantities *list, const char *section, const char *name,
+                               const char *label, int digits, double factor, double value);
+
 /* Append the figures of a variant, of a contrast, of a treatment's pairs. The same names in the
  * same order for every variant of a study. */
 void cp_quantities_of_variant(const cp_study_data *data, const cp_variant_figures *figures,

@@ -233,10 +233,9 @@ cp_status cp_slice_bound(const cp_study_data *data, const cp_replication_set *se
 }
 
 void cp_slice_injuries(const cp_study_data *data, const cp_replication_set *set, cp_slice slice,
-                       int scope, const cp_study_risk *risk, double *expected, size_t *drivers,
-                       size_t *unknown)
+                       int scope, const cp_study_risk *risk, double *expected, cp_injury_sum *sum)
 {
-    size_t known = 0, missing = 0;
+    *sum = (cp_injury_sum){0};
     for (size_t k = 0; k < set->count; k++)
         expected[k] = 0.0;
     for (size_t k = 0; k < data->vehicle_count; k++) {
@@ -244,18 +243,27 @@ void cp_slice_injuries(const cp_study_data *data, const cp_replication_set *set,
         const cp_study_crash *crash = &data->crash[vehicle->crash];
         size_t own = cp_replication_set_cluster(set, crash->replication);
         if (own == SIZE_MAX || !crash->frontal || !chosen(slice, k) || !fits(data, slice, crash) ||
+            (risk->frontal_only && !vehicle->frontal) ||
             (scope == CP_SCOPE_INSIDE && vehicle->validity != 0))
             continue;
-        double p = cp_risk_probability(&risk->function, vehicle->predictor[risk->predictor]);
+        double p = cp_risk_add(&risk->function, vehicle->predictor[risk->predictor],
+                               data->crash_type[crash->crash_type], 1.0, sum->gradient);
         if (isnan(p)) {
-            missing++;
+            sum->unknown++;
             continue;
         }
-        known++;
+        sum->drivers++;
+        sum->expected += p;
         expected[own] += p;
     }
-    if (drivers)
-        *drivers = known;
-    if (unknown)
-        *unknown = missing;
+}
+
+double cp_injury_ratio_se(const cp_risk_function *function, const cp_injury_sum *a,
+                          const cp_injury_sum *b)
+{
+    // The gradient of the logarithm: what both have in common cancels.
+    double gradient[CP_RISK_PARAMETERS_MAX];
+    for (size_t k = 0; k < cp_risk_parameters(function); k++)
+        gradient[k] = b->gradient[k] / b->expected - a->gradient[k] / a->expected;
+    return sqrt(cp_risk_variance(function, gradient));
 }

@@ -66,10 +66,22 @@ CP_MUST_CHECK cp_status cp_exceedance_contrast(const cp_study_data *data,
                                                const cp_comparison_options *options,
                                                cp_contrast_figures *figures, cp_error *error);
 
-/* Expected injured drivers of each replication of the set, written to expected[cluster]; counts of
- * drivers with and without a known predictor (may be NULL). */
+/* What a risk function says of the drivers of a slice. */
+typedef struct cp_injury_sum {
+    size_t drivers; /* of frontal crashes, whose risk it is, with a known predictor */
+    size_t unknown; /* without */
+    double expected;
+    double gradient[CP_RISK_PARAMETERS_MAX]; /* of expected by the function's parameters */
+} cp_injury_sum;
+
+/* Relative standard error that the parameters leave to the ratio of two sums by the same function;
+ * 0 without a covariance, NAN of nothing. */
+double cp_injury_ratio_se(const cp_risk_function *function, const cp_injury_sum *a,
+                          const cp_injury_sum *b);
+
+/* Sum over the set; expected injured drivers of each replication are written to expected[cluster].
+ */
 void cp_slice_injuries(const cp_study_data *data, const cp_replication_set *set, cp_slice slice,
-                       int scope, const cp_study_risk *risk, double *expected, size_t *drivers,
-                       size_t *unknown);
+                       int scope, const cp_study_risk *risk, double *expected, cp_injury_sum *sum);
 
 #endif

@@ -4,6 +4,7 @@
 #include "core/safe_text.h"
 #include "report/query_json.h"
 #include "report/study_places.h"
+#include "report/study_risk.h"
 #include "store/query.h"
 
 #include <math.h>
@@ -182,15 +183,32 @@ static cp_status read_risk(void *context, const cp_row *row, cp_error *error)
     for (int k = 0; k < CP_PREDICTOR_COUNT; k++)
         if (strcmp(row->cell[4].text, PREDICTOR_COLUMN[k]) == 0)
             risk->predictor = (cp_predictor)k;
+    risk->frontal_only = row->cell[9].integer != 0;
     double coefficient[2] = {row->cell[7].real, row->cell[8].real};
     if (risk->predictor == CP_PREDICTOR_COUNT)
         status = cp_fail(error, CP_BAD_INPUT, "unknown predictor '%s'", row->cell[4].text);
     else
         status = cp_risk_function_create(row->cell[6].text, row->cell[5].text, coefficient, 2,
                                          &risk->function, error);
+    const char *covariance = row->cell[11].type == CP_CELL_TEXT ? row->cell[11].text : NULL;
+    if (status == CP_OK)
+        status = cp_study_risk_terms(&risk->function, row->cell[10].text, error);
+    if (status == CP_OK && covariance)
+        status = cp_study_risk_covariance(&risk->function, covariance, row->cell[12].real, error);
     return status == CP_OK
                ? CP_OK
                : cp_error_prefix(error, "table risk_function, %s %s: ", risk->name, risk->level);
+}
+
+// What kind of crash the sides of its two vehicles make it; nothing without a front.
+static void take_type(const char *side_a, const char *side_b, char type[16])
+{
+    bool of_a = strcmp(side_a, "front") == 0, of_b = strcmp(side_b, "front") == 0;
+    const char *other = of_a ? side_b : side_a;
+    type[0] = '\0';
+    if (of_a || of_b)
+        snprintf(type, 16, "front-%s",
+                 strcmp(other, "front") == 0 || strcmp(other, "rear") == 0 ? other : "side");
 }
 
 static size_t index_of(const char *text, const char *const *of, size_t count)
@@ -229,19 +247,51 @@ static cp_status read_pair(void *context, const cp_row *row, cp_error *error)
             (cp_outcome)index_of(row->cell[3].text, OUTCOME, sizeof OUTCOME / sizeof *OUTCOME),
         .reason = index_of(row->cell[4].text, REASON, sizeof REASON / sizeof *REASON),
         .new_crashes = row->cell[5].real,
-        .vanished_crashes = row->cell[12 + 2 * CP_PREDICTOR_COUNT].real,
+        .vanished_crashes = row->cell[14 + 2 * CP_PREDICTOR_COUNT].real,
         .olc_g = {row->cell[6].real, row->cell[7].real},
         .closing_speed_m_s = {row->cell[8].real, row->cell[9].real},
         .treated_inside = {row->cell[10].integer != 0, row->cell[11].integer != 0},
+        .treated_frontal = {strcmp(row->cell[12].text, "front") == 0,
+                            strcmp(row->cell[13].text, "front") == 0},
     };
+    take_type(row->cell[12].text, row->cell[13].text, pair->treated_type);
     for (int role = 0; role < 2; role++)
         for (int k = 0; k < CP_PREDICTOR_COUNT; k++)
-            pair->predictor[role][k] = row->cell[12 + CP_PREDICTOR_COUNT * role + k].real;
+            pair->predictor[role][k] = row->cell[14 + CP_PREDICTOR_COUNT * role + k].real;
     return CP_OK;
 }
 
-#define PREDICTORS_OF(w, closing)                                                                  \
-    w ".delta_v_m_s, " w ".delta_v_x_m_s, " closing ", " w ".max_50ms_g, " w ".asi_1"
+static const char VEHICLES[] = CP_STUDY_PLACES
+    "SELECT c.place, w.role, CASE w.olc_status WHEN 'value' THEN 0 WHEN 'simulation_failed' THEN 2"
+    " ELSE 1 END, w.olc_g, w.delta_v_m_s, c.closing_speed_m_s, c.lateral_offset_m, c.angle_rad,"
+    " o.place, w.frontal,"
+    /* predictors */
+    " w.delta_v_m_s, w.delta_v_x_m_s, c.closing_speed_m_s, w.max_50ms_g, w.asi_1,"
+    " e.delta_v_without_rebound_m_s"
+    " FROM crash_vehicle AS w JOIN c ON c.id = w.crash_id JOIN delta_v_without_rebound AS e"
+    " ON e.crash_id = w.crash_id AND e.role = w.role JOIN o ON o.validity = w.validity"
+    " ORDER BY c.place, w.role";
+
+static const char PAIRS[] = CP_STUDY_PLACES
+    "SELECT c.place, v.place, p.outcome, p.outcome_olc, coalesce(p.reason, 'reproduced'),"
+    " p.new_crashes, p.baseline_olc_g, p.treated_olc_g, p.baseline_closing_speed_m_s,"
+    " CASE p.outcome WHEN 'avoided' THEN 0.0 ELSE p.treated_closing_speed_m_s END,"
+    " a.validity = 'inside', b.validity = 'inside', coalesce(a.contact_side, ''),"
+    " coalesce(b.contact_side, ''),"
+    /* predictors of both vehicles */
+    " a.delta_v_m_s, a.delta_v_x_m_s, p.treated_closing_speed_m_s, a.max_50ms_g, a.asi_1,"
+    " ea.delta_v_without_rebound_m_s, b.delta_v_m_s, b.delta_v_x_m_s, p.treated_closing_speed_m_s,"
+    " b.max_50ms_g, b.asi_1, eb.delta_v_without_rebound_m_s, p.vanished_crashes"
+    " FROM counterfactual_pair AS p JOIN c ON c.id = p.crash_id"
+    " JOIN v ON v.id = p.variant_id AND v.sweep = ''"
+    " LEFT JOIN counterfactual_vehicle AS a ON a.crash_id = p.crash_id"
+    " AND a.variant_id = p.variant_id AND a.role = 'a'"
+    " LEFT JOIN counterfactual_vehicle AS b ON b.crash_id = p.crash_id"
+    " AND b.variant_id = p.variant_id AND b.role = 'b'"
+    " LEFT JOIN counterfactual_delta_v_without_rebound AS ea ON ea.crash_id = p.crash_id"
+    " AND ea.variant_id = p.variant_id AND ea.role = 'a'"
+    " LEFT JOIN counterfactual_delta_v_without_rebound AS eb ON eb.crash_id = p.crash_id"
+    " AND eb.variant_id = p.variant_id AND eb.role = 'b' ORDER BY c.place, v.place";
 
 static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error)
 {
@@ -260,35 +310,11 @@ static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error
          "SELECT replication, type, frontal, validity = 'inside', id, time_s, x_m, y_m"
          " FROM c ORDER BY place",
          read_crash},
-        {CP_STUDY_PLACES
-         "SELECT c.place, w.role, CASE w.olc_status WHEN 'value' THEN 0 WHEN "
-         "'simulation_failed' THEN 2 ELSE 1 END, w.olc_g, w.delta_v_m_s,"
-         " c.closing_speed_m_s, c.lateral_offset_m, c.angle_rad, o.place, "
-         "w.frontal, " PREDICTORS_OF(
-             "w",
-             "c.closing_speed_m_s") " FROM crash_vehicle AS w JOIN c ON c.id = w.crash_id"
-                                    " JOIN o ON o.validity = w.validity ORDER BY c.place, w.role",
-         read_vehicle},
-        {CP_STUDY_PLACES
-         "SELECT c.place, v.place, p.outcome, p.outcome_olc, coalesce(p.reason,"
-         " 'reproduced'), p.new_crashes, p.baseline_olc_g, p.treated_olc_g,"
-         " p.baseline_closing_speed_m_s, CASE p.outcome WHEN 'avoided' THEN 0.0 ELSE"
-         " p.treated_closing_speed_m_s END, a.validity = 'inside', b.validity = "
-         "'inside', " PREDICTORS_OF("a", "p.treated_closing_speed_m_s") ", " PREDICTORS_OF(
-             "b", "p.treated_closing_speed_m_s") ", p.vanished_crashes FROM counterfactual_pair AS "
-                                                 "p JOIN c ON c.id = "
-                                                 "p.crash_id"
-                                                 " JOIN v ON v.id = p.variant_id AND v.sweep = ''"
-                                                 " LEFT JOIN counterfactual_vehicle AS a ON "
-                                                 "a.crash_id = p.crash_id"
-                                                 " AND a.variant_id = p.variant_id AND a.role = 'a'"
-                                                 " LEFT JOIN counterfactual_vehicle AS b ON "
-                                                 "b.crash_id = p.crash_id"
-                                                 " AND b.variant_id = p.variant_id AND b.role = 'b'"
-                                                 " ORDER BY c.place, v.place",
-         read_pair},
+        {VEHICLES, read_vehicle},
+        {PAIRS, read_pair},
         {"SELECT name, level, source, note, predictor, unit, form, coefficients ->> 0,"
-         " coefficients ->> 1 FROM risk_function ORDER BY name, level",
+         " coefficients ->> 1, drivers = 'frontal', terms, covariance, freedom FROM risk_function"
+         " WHERE use_as = 'default' ORDER BY name, level",
          read_risk},
     };
     for (size_t k = 0; k < sizeof queries / sizeof *queries; k++) {

@@ -54,7 +54,8 @@ typedef struct cp_study_crash {
     X(CP_PREDICTOR_DELTA_V_X, "delta_v_x_m_s")                                                     \
     X(CP_PREDICTOR_CLOSING_SPEED, "closing_speed_m_s")                                             \
     X(CP_PREDICTOR_MAX_50MS, "max_50ms_g")                                                         \
-    X(CP_PREDICTOR_ASI, "asi_1")
+    X(CP_PREDICTOR_ASI, "asi_1")                                                                   \
+    X(CP_PREDICTOR_DELTA_V_COMMON, "delta_v_without_rebound_m_s")
 
 typedef enum cp_predictor {
 #define CP_PREDICTOR_NAME(name, column) name,
@@ -63,7 +64,7 @@ typedef enum cp_predictor {
         CP_PREDICTOR_COUNT
 } cp_predictor;
 
-/* A row of the table risk_function. */
+/* A row of the table risk_function that comparisons use. */
 typedef struct cp_study_risk {
     char *name;
     char *level;
@@ -71,6 +72,8 @@ typedef struct cp_study_risk {
     char *note;
     cp_predictor predictor;
     cp_risk_function function;
+    bool
+        frontal_only; /* of drivers of frontally struck vehicles, else of both of a frontal crash */
 } cp_study_risk;
 
 /* What is known of a vehicle's OLC; the page of a report uses the same numbers. */
@@ -109,6 +112,8 @@ typedef struct cp_study_pair {
     double closing_speed_m_s[2];             /* treated: 0 when avoided, NAN when invalid */
     double predictor[2][CP_PREDICTOR_COUNT]; /* of the treated crash's vehicles; NAN without */
     bool treated_inside[2];                  /* these vehicles inside validity */
+    bool treated_frontal[2];                 /* and struck on their front */
+    char treated_type[16];                   /* "front-side", …; empty without a frontal one */
 } cp_study_pair;
 
 typedef struct cp_study_data {

@@ -147,11 +147,11 @@ class Report(unittest.TestCase):
         self.assertEqual(sites, self.count("SELECT count(*) FROM crash_list WHERE scenario = 'left_turn' AND crash_type = 'front-side'"))
 
     def test_injuries_agree_with_sql(self):
-        wanted = self.count("SELECT sum(1 / (1 + exp(3.761 - 0.136 * w.delta_v_m_s / 0.44704))) FROM crash_vehicle w "
-                            "JOIN variant v ON v.id = w.variant_id WHERE v.name = 'aeb' AND w.crash_type LIKE 'front-%'")
+        wanted = self.count("SELECT sum(1 / (1 + exp(5.08188 - 0.08715096 * 3.6 * w.delta_v_m_s / 1.1))) FROM crash_vehicle w "
+                            "JOIN variant v ON v.id = w.variant_id WHERE v.name = 'aeb' AND w.contact_side = 'front'")
         shown = self.browser.run("""
             const row = Array.from(document.querySelectorAll("#table-injuries tbody tr")).map(r => Array.from(r.children).map(c => c.textContent))
-                .find(r => r[0] === "aeb" && r[1] === "MAIS2+" && r[2] === "Malliaris");
+                .find(r => r[0] === "aeb" && r[1] === "MAIS2+" && r[2] === "NASS-CDS");
             return row[5];""")
         self.assertEqual(shown, f"{wanted:.2f}")
 

@@ -9,7 +9,7 @@
 #include "builders/assert_near.h"
 #include "suite_text.h"
 
-#include "calibrate/csv_table.h"
+#include "core/csv_table.h"
 
 static cp_status load(const char *text, cp_csv_table *table, cp_error *error)
 {
@@ -65,6 +65,12 @@ static void errors_name_line_and_column(void **state)
     cp_csv_table_destroy(&table);
     assert_int_equal(load("name,mass_kg\n", &table, &error), CP_BAD_INPUT);
     assert_non_null(strstr(error.text, "no row"));
+    cp_csv_table_destroy(&table);
+    assert_int_equal(load("a,b,c,d,e,f,g,h,i,j,k,l,m,n,o,p,q,r,s,t,u,v,w,x,y,z,1,2,3,4,5,6,7\n"
+                          ",,,,,,,,,,,,,,,,,,,,,,,,,,,,,,,,\n",
+                          &table, &error),
+                     CP_BAD_INPUT);
+    assert_non_null(strstr(error.text, ":1: must have at most 32 columns, found 33"));
     cp_csv_table_destroy(&table);
     assert_int_equal(cp_csv_table_load("/nowhere/table.csv", &table, &error), CP_BAD_INPUT);
     cp_csv_table_destroy(&table);

@@ -41,8 +41,13 @@ static inline invented_study *invented(size_t scenarios, size_t replications)
     s->crash_type[0] = front_front;
     s->validity[0] = inside;
     s->validity[1] = outside;
-    s->risk = (cp_study_risk){name, level, empty, empty, CP_PREDICTOR_DELTA_V, {0}};
-    s->risk.function = (cp_risk_function){CP_RISK_LOGISTIC, {-5.0, 0.3}, 1.0};
+    s->risk = (cp_study_risk){.name = name,
+                              .level = level,
+                              .source = empty,
+                              .note = empty,
+                              .predictor = CP_PREDICTOR_DELTA_V};
+    s->risk.function = (cp_risk_function){
+        .form = CP_RISK_LOGISTIC, .coefficient = {-5.0, 0.3}, .unit_per_si = 1.0};
     s->data = (cp_study_data){
         .name = name,
         .paired = true,

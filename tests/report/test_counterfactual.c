@@ -118,26 +118,33 @@ static void paired_severity_agrees_with_sql(void **state)
     }
 }
 
-// Expected injured drivers of the valid pairs before and after, avoided = 0, by GIDAS.
+// Expected injured drivers of the valid pairs before and after, avoided = 0, by NASS-CDS.
 static void benefit_agrees_with_sql(void **state)
 {
     fixture *f = *state;
-#define RISK(w) "sum(1.0 / (1.0 + exp(5.820 - 0.292 * " w ".delta_v_m_s)))"
+#define RISK "sum(1.0 / (1.0 + exp(5.08188 - 0.08715096 * 3.6 * e.delta_v_without_rebound_m_s)))"
 #define OF_VALID                                                                                   \
     " JOIN counterfactual_pair AS p ON p.crash_id = w.crash_id AND p.variant = '%s' AND"           \
     " p.outcome <> 'invalid' AND p.baseline_crash_type LIKE 'front-%%'"
-    size_t gidas = 0;
-    while (strcmp(f->data.risk[gidas].name, "GIDAS") != 0)
-        gidas++;
+    size_t mais2 = 0;
+    while (strcmp(f->data.risk[mais2].name, "NASS-CDS") != 0 ||
+           strcmp(f->data.risk[mais2].level, "MAIS2+") != 0)
+        mais2++;
     for (size_t k = 0; k < 2; k++) {
         const cp_counterfactual_figures *c = &f->comparison.counterfactual[k];
         const char *name = f->data.variant[c->variant].name;
-        double before = asked(f, "SELECT " RISK("w") " FROM crash_vehicle AS w" OF_VALID, name);
+        double before = asked(f,
+                              "SELECT " RISK " FROM crash_vehicle AS w JOIN"
+                              " delta_v_without_rebound AS e USING (crash_id, role)" OF_VALID
+                              " WHERE w.frontal = 1",
+                              name);
         double after = asked(f,
-                             "SELECT " RISK("w") " FROM counterfactual_vehicle AS w" OF_VALID
-                                                 " AND p.variant_id = w.variant_id",
+                             "SELECT " RISK " FROM counterfactual_vehicle AS w JOIN"
+                             " counterfactual_delta_v_without_rebound AS e USING (crash_id, "
+                             "variant_id, role)" OF_VALID
+                             " AND p.variant_id = w.variant_id WHERE w.frontal = 1",
                              name);
-        const cp_benefit_figures *b = &c->benefit[gidas];
+        const cp_benefit_figures *b = &c->benefit[mais2];
         assert_true(fabs(b->baseline - before) < 1e-9 * before);
         assert_true(fabs(b->treatment - after) < 1e-9 * after);
         assert_true(fabs(b->benefit_1 - (1.0 - after / before)) < 1e-12);

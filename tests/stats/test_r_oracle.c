@@ -273,9 +273,10 @@ static void risk_functions(void **state)
             cp_risk_function_create(cases[k].form, cases[k].unit, cases[k].c, 2, &f, &error),
             CP_OK);
         for (size_t j = 0; j < 4; j++)
-            assert_close(cp_risk_probability(&f, v[j]), cases[k].expected[j]);
+            assert_close(cp_risk_probability(&f, v[j], NULL), cases[k].expected[j]);
     }
-    assert_true(cp_risk_probability(&f, 0.0) == 0.0 && isnan(cp_risk_probability(&f, NAN)));
+    assert_true(cp_risk_probability(&f, 0.0, NULL) == 0.0 &&
+                isnan(cp_risk_probability(&f, NAN, NULL)));
     assert_int_equal(cp_risk_function_create("cubic", "m/s", v, 2, &f, &error), CP_BAD_INPUT);
     assert_int_equal(cp_risk_function_create("logistic", "knots", v, 2, &f, &error), CP_BAD_INPUT);
     assert_int_equal(cp_risk_function_create("logistic", "m/s", v, 3, &f, &error), CP_BAD_INPUT);

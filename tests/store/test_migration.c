@@ -221,6 +221,31 @@ static void counted_backgrounds_become_contacts(void **state)
     cp_store_close(store);
 }
 
+// What was shipped becomes history; what its user edited or added stays in use, under its name.
+static void risk_functions_of_users_stay(void **state)
+{
+    const fixture *f = *state;
+    cp_store *store = NULL;
+    cp_error error = {0};
+    make_version(f->db, 13);
+    shell(
+        "sqlite3 '%s' \"UPDATE risk_function SET coefficients = '[-4, 0.1]' WHERE name = "
+        "'Malliaris' AND level = 'fatal'; INSERT INTO risk_function VALUES ('NASS-CDS', 'MAIS2+', "
+        "'asi_1', '1', 'logistic', '[-3, 1]', 'mine', '')\"",
+        f->db);
+    assert_ok(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), &error);
+    assert_true(number_of(store, "SELECT count(*) FROM risk_function WHERE use_as = 'history'") ==
+                2);
+    assert_true(number_of(store, "SELECT count(*) FROM risk_function WHERE use_as = 'default' AND "
+                                 "name = 'Malliaris' AND coefficients = '[-4, 0.1]'") == 1);
+    assert_true(number_of(store,
+                          "SELECT count(*) FROM risk_function WHERE use_as = 'default' AND "
+                          "name = 'NASS-CDS' AND level = 'MAIS2+' AND source = 'mine'") == 1);
+    assert_true(number_of(store, "SELECT count(*) FROM risk_function WHERE name LIKE 'NASS%'") ==
+                8);
+    cp_store_close(store);
+}
+
 // Pulses that the first codec packed, and what the program of that version unpacked of them.
 static void first_codec_is_read(void **state)
 {
@@ -303,6 +328,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(ids_become_whole_numbers_of_a_double, fixture_begin,
                                         fixture_end),
+        cmocka_unit_test_setup_teardown(risk_functions_of_users_stay, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(migrates_from_every_version, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(counted_backgrounds_become_contacts, fixture_begin,
                                         fixture_end),

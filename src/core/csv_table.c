@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "calibrate/csv_table.h"
+#include "core/csv_table.h"
 
-#include "calibrate/csv_row.h"
+#include "core/csv_row.h"
 #include "core/file.h"
 #include "core/yaml_file.h"
 
@@ -32,6 +32,9 @@ static cp_status take_line(cp_csv_table *table, char *line, size_t number, cp_er
 {
     if (table->column_count == 0) {
         table->column_count = cp_csv_split(line, table->column, CP_CSV_FIELDS_MAX);
+        if (table->column_count > CP_CSV_FIELDS_MAX)
+            return cp_fail(error, CP_BAD_INPUT, "%s:%zu: must have at most %d columns, found %zu",
+                           table->path, number, CP_CSV_FIELDS_MAX, table->column_count);
         return CP_OK;
     }
     char *fields[CP_CSV_FIELDS_MAX];
@@ -46,15 +49,20 @@ static cp_status take_line(cp_csv_table *table, char *line, size_t number, cp_er
 
 cp_status cp_csv_table_load(const char *path, cp_csv_table *table, cp_error *error)
 {
-    size_t size = 0, number = 0;
+    char *content = NULL;
+    size_t size = 0;
     *table = (cp_csv_table){0};
-    cp_status status = cp_file_read(path, &table->content, &size, error);
-    if (status != CP_OK)
-        return status;
-    table->path = strdup(path);
+    cp_status status = cp_file_read(path, &content, &size, error);
+    return status == CP_OK ? cp_csv_table_parse(path, content, table, error) : status;
+}
+
+cp_status cp_csv_table_parse(const char *path, char *content, cp_csv_table *table, cp_error *error)
+{
+    size_t number = 0;
+    *table = (cp_csv_table){.content = content, .path = strdup(path)};
     if (table->path == NULL)
         return cp_fail_memory(error, path);
-    status = make_room(table, error);
+    cp_status status = make_room(table, error);
     for (char *rest = table->content; status == CP_OK && rest != NULL && *rest != '\0';) {
         char *line = cp_csv_next_line(&rest);
         number++;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef CALIBRATE_CSV_ROW_H
-#define CALIBRATE_CSV_ROW_H
+#ifndef CORE_CSV_ROW_H
+#define CORE_CSV_ROW_H
 
 #include "core/error.h"
 

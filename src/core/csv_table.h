@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef CALIBRATE_CSV_TABLE_H
-#define CALIBRATE_CSV_TABLE_H
+#ifndef CORE_CSV_TABLE_H
+#define CORE_CSV_TABLE_H
 
 #include "core/error.h"
 
@@ -22,6 +22,10 @@ typedef struct cp_csv_table {
 /* Load. Errors: CP_BAD_INPUT with file and line (a row of another number of fields, no row at all).
  * The caller destroys, also after an error. */
 CP_MUST_CHECK cp_status cp_csv_table_load(const char *path, cp_csv_table *table, cp_error *error);
+/* The same from zero-terminated text, which the table owns from here on; path names it in errors.
+ */
+CP_MUST_CHECK cp_status cp_csv_table_parse(const char *path, char *content, cp_csv_table *table,
+                                           cp_error *error);
 void cp_csv_table_destroy(cp_csv_table *table);
 
 /* Text of a column in a row. Errors: CP_BAD_INPUT naming a column that is missing. */

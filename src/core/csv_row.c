@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "calibrate/csv_row.h"
+#include "core/csv_row.h"
 
 #include <string.h>
 

@@ -13,13 +13,16 @@ const DASHES = [null, "7 3", "2 3", "9 3 2 3", "5 5", "1 4"];
 const colour = variant => `var(--v${variant % 6})`;
 const missing = value => value === null || value === undefined;
 const fixed = (value, digits) => missing(value) ? "–" : value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
+// A ratio; what is beyond a thousand is no more than that.
+const ratio = value => missing(value) ? "–" : value > 1000 ? "> 1000" : fixed(value, 2);
 const integer = value => missing(value) ? "–" : d3.format(",")(value).replace(/,/g, " ");
 const percent = value => missing(value) ? "–" : `${(100 * value).toFixed(0)} %`;
 const estimate = (e, digits) => missing(e) ? "–" : (e.relation === "=" ? "" : `${e.relation} `) + fixed(e.value, digits);
 const pValue = p => missing(p) ? "–" : p < 0.001 ? "< 0.001" : p.toFixed(3);
 // Three significant digits, thousands apart.
 const rate = value => missing(value) ? "–" : value >= 1000 ? integer(Number(value.toPrecision(3))) : String(Number(value.toPrecision(3)));
-const readable = text => text.replace(/_/g, " ").replace(/,/g, ", ");
+// Names of the study as words; a swept one names its parameter as the study file does.
+const readable = text => (text.includes("@") ? text : text.replace(/_/g, " ")).replace(/,/g, ", ");
 
 function interval(i, format) {
   if (!i || i.status !== "value") return i ? i.status : "–";
@@ -51,6 +54,9 @@ function chosen() {
 function scopeText() {
   return state.scope === "all" ? "all frontally struck vehicles" : "vehicles inside the validated range";
 }
+
+// In the counterfactual design single crashes of a treatment are those of the baseline that still happen.
+const treatedText = () => (slice().judged ? " With a treatment: what the baseline’s crashes became, as far as they were not avoided." : "");
 
 // ---- building blocks --------------------------------------------------------------------------
 
@@ -168,7 +174,7 @@ function frame(svg, width, height, margin, x, y, xTitle, yTitle, yPlaces) {
     .attr("x2", w).attr("y1", y).attr("y2", y);
   inner.selectAll(null).data(x.ticks(xTicks)).enter().append("line").attr("class", "gridline")
     .attr("y2", h).attr("x1", x).attr("x2", x);
-  inner.append("g").attr("class", "axis").attr("transform", `translate(0,${h})`).call(d3.axisBottom(x).ticks(xTicks).tickSizeOuter(0));
+  inner.append("g").attr("class", "axis").attr("transform", `translate(0,${h})`).call(d3.axisBottom(x).ticks(xTicks).tickFormat(x.wholeNumbers ? v => (Number.isInteger(v) ? integer(v) : "") : null).tickSizeOuter(0));
   inner.append("g").attr("class", "axis").call(d3.axisLeft(y).tickValues(places).tickSizeOuter(0));
   inner.append("text").attr("class", "axis-title").attr("x", w / 2).attr("y", h + 38).attr("text-anchor", "middle").text(xTitle);
   inner.append("text").attr("class", "axis-title").attr("transform", `translate(${-margin.left + 14},${h / 2}) rotate(-90)`)

@@ -9,7 +9,7 @@ const OUTCOME_COLOUR = { avoided: "var(--v3)", mitigated: "var(--v1)", unchanged
 const flowFigure = data.study.design !== "counterfactual" ? null : figure("figure-flow", "What became of the baseline’s frontal crashes",
   () => "Each baseline crash run again from a checkpoint before contact with the treatment on its two vehicles; outcomes by closing speed (±0.5 m/s), they add up to the baseline’s crashes. Shares are of the valid pairs, with 95 % intervals that allow for what replications scatter. The table has the crashes that were inside the validated range with the baseline apart.",
   function (svg, width) {
-    const treatments = shownPairs(), panel = 250, left = 92, right = Math.min(290, 0.52 * width);
+    const treatments = shownPairs(), panel = 250, left = 92, right = Math.min(290, Math.max(185, 0.52 * width));
     treatments.forEach((t, place) => {
       const g = svg.append("g").attr("transform", `translate(0,${place * panel + 22})`), height = panel - 60, scale = (height - 50) / Math.max(1, t.crashes);
       g.append("text").attr("x", 4).attr("y", -6).style("font-weight", 600).text(t.new_crashes > 0 ? `${t.variant} (${integer(t.new_crashes)} new crash${t.new_crashes === 1 ? "" : "es"} between others besides)` : t.variant);
@@ -68,4 +68,29 @@ const benefitFigure = figure("figure-benefit", "Benefit in expected injured driv
   function () {
     const rows = benefits().map(b => [b.name, b.level, b.function, b.baseline, b.treatment, b.benefit_1, b.interval.low, b.interval.high, b.interval.status, b.bounds_1[0], b.bounds_1[1]]);
     return { summary: rows.map(r => `${r[0]}, ${r[1]} (${r[2]}): ${percent(r[5])}`).join("; "), columns: ["treatment", "level", "function", "expected_baseline", "expected_treatment", "benefit_1", "low", "high", "interval", "at_least", "at_most"], rows: rows };
+  });
+
+// ---- injury risk ---------------------------------------------------------------------------------------
+
+// Functions of a speed, over km/h; the levels have the colours, the functions the dashes.
+const riskCurves = () => data.risks.filter(r => r.curve);
+const riskLevels = [...new Set(data.risks.map(r => r.level))], riskNames = [...new Set(data.risks.map(r => r.name))];
+const riskStyle = (node, r) => node.style("stroke", `var(--v${1 + riskLevels.indexOf(r.level) % 5})`).style("stroke-dasharray", DASHES[riskNames.indexOf(r.name) % 6]).style("stroke-width", 2.2);
+
+const riskFigure = figure("figure-risk", "Injury risk over delta-v",
+  () => "Probability that a driver is injured at least so badly, by the functions that the table below sums up: what stands between delta-v and expected injuries. Beyond the crashes they were made from they extrapolate; sources in the table.",
+  function (svg, width) {
+    const curves = riskCurves(), top = legend(svg, width, curves.map((r, k) => ({ variant: k, label: `${r.level} (${r.name})` })), (g, k) => riskStyle(g.append("line").attr("x2", 18), curves[k]));
+    const margin = { top: top + 4, right: 16, bottom: 48, left: 52 }, height = margin.top + Math.min(330, 140 + width * 0.35) + margin.bottom;
+    const x = d3.scaleLinear().domain([0, d3.max(curves, r => d3.max(r.curve.x))]).range([0, width - margin.left - margin.right]);
+    const y = d3.scaleLinear().domain([0, 1]).range([height - margin.top - margin.bottom, 0]);
+    const inner = frame(svg, width, height, margin, x, y, curves.every(r => r.predictor.startsWith("delta_v")) ? "delta-v, km/h" : "predictor, km/h", "probability");
+    curves.filter(r => r.curve.low).forEach(r => inner.append("path").attr("class", "band").attr("d", d3.area().x(v => x(v)).y0((v, k) => y(r.curve.low[k])).y1((v, k) => y(r.curve.high[k]))(r.curve.x)).style("fill", `var(--v${1 + riskLevels.indexOf(r.level) % 5})`).style("opacity", 0.14));
+    curves.forEach(r => riskStyle(inner.append("path").attr("class", "curve").attr("d", d3.line().x(v => x(v)).y((v, k) => y(r.curve.probability[k]))(r.curve.x)).style("fill", "none"), r));
+    readout(svg, inner, x, y.range()[0], value => [`${fixed(value, 0)} km/h`, ...curves.map(r => `${r.level} (${r.name}): ${percent(r.curve.probability[Math.min(r.curve.x.length - 1, Math.round(value / (r.curve.x[1] - r.curve.x[0])))])}`)]);
+    return height;
+  },
+  function () {
+    const rows = d3.merge(riskCurves().map(r => r.curve.x.map((v, k) => [r.level, r.name, r.predictor, v, r.curve.probability[k]])));
+    return { summary: riskCurves().map(r => `${r.level} (${r.name}): ${percent(r.curve.probability[25])} at ${r.curve.x[25]} km/h`).join("; "), columns: ["level", "function", "predictor", "km_h", "probability"], rows: rows };
   });

@@ -3,7 +3,8 @@
 
 // ---- pulse corridors ------------------------------------------------------------------------------------
 
-const corridors = () => shownVariants().map(v => Object.assign({ variant: indexOf(v.variant), name: v.variant }, v.corridor[state.scope])).filter(c => c.p50.length > 0);
+// Treated crashes of the counterfactual design have pulses too.
+const corridors = () => shownVariants().concat((slice().treated || []).filter(v => state.variants.has(indexOf(v.variant)))).map(v => Object.assign({ variant: indexOf(v.variant), name: v.variant }, v.corridor[state.scope])).filter(c => c.p50.length > 0);
 const STEP_MS = 2;
 
 const corridorFigure = figure("figure-corridor", "Pulse corridors",

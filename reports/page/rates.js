@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How often it crashes: crash rates, crashes above a severity.
+// How often it crashes: crash rates.
 
 // ---- crash rates ----------------------------------------------------------------------------------
 
@@ -41,28 +41,4 @@ const rateFigure = figure("figure-rate", "Frontal crash rate",
       columns: ["variant", "replications", "vehicle_km", "frontal_crashes", "per_million_km", "widened_low", "widened_high", "bootstrap_low", "bootstrap_high", "dispersion"],
       rows: rows
     };
-  });
-
-// ---- crashes above a severity ------------------------------------------------------------------------
-
-const above = () => shownVariants().map(v => Object.assign({ variant: indexOf(v.variant), name: v.variant }, v.crashes_above.olc.curve)).filter(c => !missing(c.per_million_km[0]));
-
-const aboveFigure = figure("figure-above", "Crashes above a severity",
-  () => "Frontal crashes whose OLC exceeds the value, per million vehicle-km: rate and severity in one, which a treatment cannot change by moving crashes out of what is looked at. The larger OLC of the frontally struck vehicles of a crash, extrapolated ones included; band: 95 % at each value by itself. The table has how many are certain, and how many possible, if severities outside the validated range count as unknown.",
-  function (svg, width) {
-    const curves = above(), top = legend(svg, width, curves.map(c => ({ variant: c.variant, label: c.name })), lineMark);
-    const margin = { top: top + 4, right: 16, bottom: 48, left: 66 }, height = margin.top + Math.min(330, 140 + width * 0.35) + margin.bottom;
-    const last = d3.max(curves, c => d3.max(c.x.filter((x, k) => c.crashes[k] > 0))) || 1;
-    const x = d3.scaleLinear().domain([0, last + 2]).range([0, width - margin.left - margin.right]);
-    const y = d3.scaleLinear().domain([0, d3.max(curves, c => d3.max(c.high)) || 1]).nice().range([height - margin.top - margin.bottom, 0]);
-    const inner = frame(svg, width, height, margin, x, y, "OLC, g", "crashes above it per 10⁶ veh-km"), shown = c => c.x.filter(v => v <= last + 2);
-    curves.forEach(c => inner.append("path").attr("class", "band").attr("d", d3.area().x(v => x(v)).y0((v, k) => y(c.low[k])).y1((v, k) => y(c.high[k]))(shown(c))).style("fill", colour(c.variant)).style("opacity", 0.16));
-    curves.forEach(c => inner.append("path").attr("d", d3.line().x(v => x(v)).y((v, k) => y(c.per_million_km[k]))(shown(c))).style("fill", "none").style("stroke", colour(c.variant)).style("stroke-width", 2.2).style("stroke-dasharray", DASHES[c.variant % 6]));
-    readout(svg, inner, x, y.range()[0], value => { const k = Math.min(curves[0].x.length - 1, Math.round(value)); return [`above ${k} g`, ...curves.map(c => `${c.name}: ${rate(c.per_million_km[k])} (${rate(c.low[k])} to ${rate(c.high[k])})`)]; });
-    return height;
-  },
-  function () {
-    const rows = [];
-    above().forEach(c => c.x.forEach((x, k) => rows.push([c.name, x, c.crashes[k], c.at_least[k], c.at_most[k], c.per_million_km[k], c.low[k], c.high[k]])));
-    return { summary: shownVariants().map(v => `${v.variant}: ${rate(v.crashes_above.olc.per_million_km)} above ${v.crashes_above.olc.x} g`).join("; "), columns: ["variant", "above_olc_g", "crashes", "at_least", "at_most", "per_million_km", "low", "high"], rows: rows };
   });

@@ -3,7 +3,7 @@
 
 // ---- filters, theme, size ----------------------------------------------------------------------------
 
-const drawings = [rateFigure, aboveFigure, ecdfFigure, differenceFigure, pairedFigure, scatterFigure, mapFigure, siteFigure, flowFigure, benefitFigure, corridorFigure, gallery].filter(Boolean);
+const drawings = [rateFigure, forestFigure, aboveFigure, aboveDeltaVFigure, ecdfFigure, deltaVFigure, differenceFigure, pairedFigure, scatterFigure, mapFigure, siteFigure, flowFigure, benefitFigure, riskFigure, corridorFigure, convergenceFigure, ...doseFigures, gallery].filter(Boolean);
 function update() {
   cards();
   [exposureTable, quantileTable, contrastTable, injuryTable, precisionTable, validityTable, scorecardTable].forEach(draw => draw());
@@ -41,6 +41,8 @@ data.variants.forEach((v, k) => {
   };
 });
 if (!pairedFigure) document.getElementById("figure-paired").remove();
+if (!forestFigure) document.getElementById("figure-forest").remove();
+if (doseFigures.length === 0) document.getElementById("section-dose").remove();
 if (!flowFigure) document.getElementById("section-flow").remove();
 document.getElementById("filters").onsubmit = event => event.preventDefault();
 const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");

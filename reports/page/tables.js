@@ -3,30 +3,44 @@
 
 // ---- cards and tables --------------------------------------------------------------------------------
 
+// A card with its list; returns line(name, value, small, id).
+function card(parent, name, corner) {
+  const node = element(parent, "article", undefined, { class: "card", "data-variant": name });
+  node.style.setProperty("--colour", colour(indexOf(name)));
+  element(element(node, "h3", name), "small", corner);
+  const list = element(node, "dl");
+  return function (title, value, small, id) {
+    element(list, "dt", title);
+    const dd = element(list, "dd", value, id ? { "data-figure": id } : {});
+    if (small) element(dd, "small", small);
+  };
+}
+
+function variantCard(parent, v) {
+  const r = v.frontal_crashes_per_million_km, olc = v.olc_g[state.scope], line = card(parent, v.variant, `${v.replications} replications`);
+  line("Exposure, vehicle-km", integer(Math.round(v.vehicle_km)));
+  line("Frontal crashes", integer(v.frontal_crashes), undefined, "frontal_crashes");
+  line("of these front-front inside range", integer(v.front_front_inside), undefined, "front_front_inside");
+  line("Rate per 10⁶ veh-km", rate(r.value), r.interval.status === "value" ? `95 % ${interval(r.interval, rate)}${r.bootstrap.status === "value" ? "" : " (Poisson, widened)"}` : undefined);
+  const above = v.crashes_above.olc;
+  line(`Above ${above.x} g per 10⁶ veh-km`, rate(above.per_million_km), `${above.crashes} crashes; ${interval(above.interval, rate)}`);
+  line("Vehicles struck on the front", integer(v.frontal_vehicles), `${percent(v.share_inside_validity)} inside validated range`, "frontal_vehicles");
+  line("Median OLC, g", estimate(olc.median, 1), `n = ${olc.n}${olc.censored ? `, ${olc.censored} censored` : ""}`, "median");
+}
+
+// A treatment of the counterfactual design has no replications: what became of the baseline's crashes.
+function treatmentCard(parent, c) {
+  const line = card(parent, c.variant, `${integer(c.valid)} valid pairs`), olc = c.olc_change_g.all_pairs, share = name => `${percent(c.valid ? c.outcomes[name] / c.valid : null)}; 95 % ${interval(c.shares[name], percent)}`;
+  ["avoided", "mitigated", "unchanged", "aggravated", "changed_opponent"].forEach(name => line(readable(name).replace(/^./, l => l.toUpperCase()), integer(c.outcomes[name]), name === "unchanged" || c.outcomes[name] === 0 ? undefined : share(name), name));
+  line("New crashes between others", integer(c.new_crashes));
+  line("Change of OLC, g", fixed(olc.hodges_lehmann, 1), interval(olc.hodges_lehmann_interval, n => fixed(n, 1)));
+}
+
 function cards() {
   const parent = document.getElementById("cards");
   parent.textContent = "";
-  shownVariants().forEach(v => {
-    const k = indexOf(v.variant);
-    const card = element(parent, "article", undefined, { class: "card", "data-variant": v.variant });
-    card.style.setProperty("--colour", colour(k));
-    const head = element(card, "h3", v.variant), r = v.frontal_crashes_per_million_km, olc = v.olc_g[state.scope];
-    element(head, "small", `${v.replications} replications`);
-    const list = element(card, "dl");
-    const line = (name, value, small, id) => {
-      element(list, "dt", name);
-      const dd = element(list, "dd", value, id ? { "data-figure": id } : {});
-      if (small) element(dd, "small", small);
-    };
-    line("Exposure, vehicle-km", integer(Math.round(v.vehicle_km)));
-    line("Frontal crashes", integer(v.frontal_crashes), undefined, "frontal_crashes");
-    line("of these front-front inside range", integer(v.front_front_inside), undefined, "front_front_inside");
-    line("Rate per 10⁶ veh-km", rate(r.value), r.interval.status === "value" ? `95 % ${interval(r.interval, rate)}${r.bootstrap.status === "value" ? "" : " (Poisson, widened)"}` : undefined);
-    const above = v.crashes_above.olc;
-    line(`Above ${above.x} g per 10⁶ veh-km`, rate(above.per_million_km), `${above.crashes} crashes; ${interval(above.interval, rate)}`);
-    line("Vehicles struck on the front", integer(v.frontal_vehicles), `${percent(v.share_inside_validity)} inside validated range`, "frontal_vehicles");
-    line("Median OLC, g", estimate(olc.median, 1), `n = ${olc.n}${olc.censored ? `, ${olc.censored} censored` : ""}`, "median");
-  });
+  shownVariants().forEach(v => variantCard(parent, v));
+  shownPairs().forEach(c => treatmentCard(parent, c));
   const filtered = state.scenario !== "" || state.crashType !== "";
   document.getElementById("slice-answer").textContent = filtered ? slice().answer : "";
   const total = d3.sum(shownVariants(), v => v.frontal_crashes);
@@ -68,10 +82,10 @@ const contrastTable = tableSection("contrasts", "", function () {
     const add = (what, value, i, bound, p, holm) => rows.push([c.variant, what, value, i, bound, p, holm]);
     const test = q => missing(q.superiority.p) ? q.superiority.status : (q.superiority.status === "value" ? "" : "≤ ") + pValue(q.superiority.p);
     const change = e => missing(e) ? "–" : (e.relation === "=" ? "" : `${e.relation} `) + km_h(e.value);
-    add("rate ratio of frontal crashes", fixed(c.rate_ratio, 2), interval(c.rate_ratio_interval, two), "", pValue(c.rate_p), pValue(c.rate_p_holm));
+    add("rate ratio of frontal crashes", ratio(c.rate_ratio), interval(c.rate_ratio_interval, ratio), "", pValue(c.rate_p), pValue(c.rate_p_holm));
     [["olc", 1, "g OLC"], ["delta_v", 3.6, "km/h delta-v"]].forEach(([key, factor, unit]) => {
       const r = c.crashes_above[key];
-      add(`rate ratio of crashes above ${Number((factor * r.x).toPrecision(6))} ${unit} (${r.crashes[1]} against ${r.crashes[0]})`, fixed(r.ratio, 2), interval(r.interval, two), bounds(r.bound_intervals[0].low, r.bound_intervals[1].high, two), "", "");
+      add(`rate ratio of crashes above ${Number((factor * r.x).toPrecision(6))} ${unit} (${r.crashes[1]} against ${r.crashes[0]})`, ratio(r.ratio), interval(r.interval, ratio), bounds(r.bound_intervals[0].low, r.bound_intervals[1].high, ratio), "", "");
     });
     add(`Cliff’s δ of OLC (${o.compared[1]} against ${o.compared[0]} vehicles)`, fixed(o.superiority.cliffs_delta, 2), interval(o.superiority.interval, two), c.olc_bounds.every(b => b.status === "value") ? bounds(c.olc_bounds[0].interval.low, c.olc_bounds[1].interval.high, two) : "–", test(o), pValue(o.p_holm));
     add(`difference in median OLC, g (${estimate(o.medians[1], 1)} against ${estimate(o.medians[0], 1)})`, estimate(o.median_difference, 1), interval(o.median_interval, one), "", "", "");

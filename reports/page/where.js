@@ -10,7 +10,7 @@ const mapRows = () => {
 const speedColour = d3.scaleSequential(d3.interpolateViridis).domain([130, 0]).clamp(true);
 
 const mapFigure = figure("figure-map", "Crash configurations",
-  () => "Frontal crashes by lateral offset of the opponent and angle (0° = exactly oncoming, ±90° = crossing), seen from the vehicle struck on its front; colour: closing speed. Filled: that vehicle is inside the validated range." + thinned(),
+  () => "Frontal crashes by lateral offset of the opponent and angle (0° = exactly oncoming, ±90° = crossing), seen from the vehicle struck on its front; colour: closing speed. Filled: that vehicle is inside the validated range." + treatedText() + thinned(),
   function (svg, width) {
     const rows = mapRows(), variants = data.variants.map((v, k) => k).filter(k => state.variants.has(k)), count = variants.length;
     const legendWidth = Math.min(220, width - 120), bar = svg.append("g").attr("transform", "translate(56,4)");
@@ -48,7 +48,7 @@ const mapFigure = figure("figure-map", "Crash configurations",
 // ---- crash sites on the network --------------------------------------------------------------------
 
 const siteFigure = figure("figure-sites", "Crash sites",
-  () => "Where the first contacts lie, on the lanes of the SUMO network; metres, equal scale both ways." + data.networks.map((n, k) => n.missing ? ` ${readable(data.scenarios[k])}: drawn without its network, ${n.missing}.` : "").join("") + thinned(),
+  () => "Where the first contacts lie, on the lanes of the SUMO network; metres, equal scale both ways." + data.networks.map((n, k) => n.missing ? ` ${readable(data.scenarios[k])}: drawn without its network, ${n.missing}.` : "").join("") + treatedText() + thinned(),
   function (svg, width) {
     const rows = mapRows(), names = data.variants.map((v, k) => ({ variant: k, label: v.name })).filter(n => state.variants.has(n.variant));
     let top = legend(svg, width, names, pointMark) + 6;

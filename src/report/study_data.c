@@ -131,16 +131,10 @@ static cp_status read_crash(void *context, const cp_row *row, cp_error *error)
     return CP_OK;
 }
 
-static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
+// A vehicle from the first cells of a row, of a crash as it happened or a treated one.
+static cp_study_vehicle vehicle_of(const cp_row *row)
 {
-    reader *r = context;
-    cp_study_data *data = r->data;
-    cp_status status =
-        grow((void **)&data->vehicle, data->vehicle_count, &r->room, sizeof *data->vehicle, error);
-    if (status != CP_OK)
-        return status;
-    cp_study_vehicle *vehicle = &data->vehicle[data->vehicle_count++];
-    *vehicle = (cp_study_vehicle){
+    cp_study_vehicle vehicle = {
         .crash = (size_t)row->cell[0].integer,
         .role = row->cell[1].text[0],
         .olc = (cp_olc_known)row->cell[2].integer,
@@ -153,8 +147,37 @@ static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
         .frontal = row->cell[9].integer != 0,
     };
     for (int k = 0; k < CP_PREDICTOR_COUNT; k++)
-        vehicle->predictor[k] = row->cell[10 + k].real;
+        vehicle.predictor[k] = row->cell[10 + k].real;
+    return vehicle;
+}
+
+static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
+{
+    reader *r = context;
+    cp_study_data *data = r->data;
+    cp_status status =
+        grow((void **)&data->vehicle, data->vehicle_count, &r->room, sizeof *data->vehicle, error);
+    if (status != CP_OK)
+        return status;
+    cp_study_vehicle *vehicle = &data->vehicle[data->vehicle_count++];
+    *vehicle = vehicle_of(row);
     data->frontal_vehicle_count += vehicle->frontal;
+    return CP_OK;
+}
+
+static cp_status read_treated(void *context, const cp_row *row, cp_error *error)
+{
+    reader *r = context;
+    cp_study_data *data = r->data;
+    cp_status status =
+        grow((void **)&data->treated, data->treated_count, &r->room, sizeof *data->treated, error);
+    if (status != CP_OK)
+        return status;
+    cp_study_treated *treated = &data->treated[data->treated_count++];
+    treated->vehicle = vehicle_of(row);
+    treated->variant = (size_t)row->cell[10 + CP_PREDICTOR_COUNT].integer;
+    treated->x_m = row->cell[11 + CP_PREDICTOR_COUNT].real;
+    treated->y_m = row->cell[12 + CP_PREDICTOR_COUNT].real;
     return CP_OK;
 }
 
@@ -242,6 +265,12 @@ static cp_status read_pair(void *context, const cp_row *row, cp_error *error)
 #define PREDICTORS_OF(w, closing)                                                                  \
     w ".delta_v_m_s, " w ".delta_v_x_m_s, " closing ", " w ".max_50ms_g, " w ".asi_1"
 
+// What vehicle_of() reads behind the crash, of a vehicle w; crash: who knows both vehicles' speed.
+#define VEHICLE_CELLS(crash)                                                                       \
+    "w.role, CASE w.olc_status WHEN 'value' THEN 0 WHEN 'simulation_failed' THEN 2 ELSE 1 END,"    \
+    " w.olc_g, w.delta_v_m_s, " crash ".closing_speed_m_s, " crash ".lateral_offset_m, " crash     \
+    ".angle_rad, o.place, w.frontal, " PREDICTORS_OF("w", crash ".closing_speed_m_s")
+
 static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error)
 {
     const struct {
@@ -259,14 +288,10 @@ static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error
          "SELECT replication, type, frontal, validity = 'inside', id, time_s, x_m, y_m"
          " FROM c ORDER BY place",
          read_crash},
-        {CP_STUDY_PLACES
-         "SELECT c.place, w.role, CASE w.olc_status WHEN 'value' THEN 0 WHEN "
-         "'simulation_failed' THEN 2 ELSE 1 END, w.olc_g, w.delta_v_m_s,"
-         " c.closing_speed_m_s, c.lateral_offset_m, c.angle_rad, o.place, "
-         "w.frontal, " PREDICTORS_OF(
-             "w",
-             "c.closing_speed_m_s") " FROM crash_vehicle AS w JOIN c ON c.id = w.crash_id"
-                                    " JOIN o ON o.validity = w.validity ORDER BY c.place, w.role",
+        {CP_STUDY_PLACES "SELECT c.place, " VEHICLE_CELLS(
+             "c") " FROM crash_vehicle AS w"
+                  " JOIN c ON c.id = w.crash_id JOIN o ON o.validity = w.validity"
+                  " ORDER BY c.place, w.role",
          read_vehicle},
         {CP_STUDY_PLACES
          "SELECT c.place, v.place, p.outcome, p.outcome_olc, coalesce(p.reason,"
@@ -285,6 +310,14 @@ static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error
                                                  " AND b.variant_id = p.variant_id AND b.role = 'b'"
                                                  " ORDER BY c.place, v.place",
          read_pair},
+        {CP_STUDY_PLACES "SELECT c.place, " VEHICLE_CELLS(
+             "p") ", v.place, p.x_m, p.y_m"
+                  " FROM counterfactual_vehicle AS w JOIN counterfactual AS p"
+                  " ON p.crash_id = w.crash_id AND p.variant_id = w.variant_id"
+                  " JOIN c ON c.id = w.crash_id JOIN o ON o.validity = w.validity"
+                  " JOIN v ON v.id = w.variant_id AND v.sweep = ''"
+                  " ORDER BY c.place, v.place, w.role",
+         read_treated},
         {"SELECT name, level, source, note, predictor, unit, form, coefficients ->> 0,"
          " coefficients ->> 1 FROM risk_function ORDER BY name, level",
          read_risk},
@@ -320,6 +353,11 @@ static cp_status read_about(cp_store *store, cp_study_data *data, cp_error *erro
          " r.vehicle_km, r.vehicle_h, r.configuration_hash FROM replication AS r"
          " JOIN scenario AS s ON s.id = r.scenario_id JOIN variant AS v ON v.id = r.variant_id"
          " ORDER BY s.number, v.number, r.sweep, r.number"},
+        {"sweep",
+         "SELECT w.owner, coalesce(v.name, s.name) AS name, w.base, w.parameter, w.value"
+         " FROM sweep_value AS w LEFT JOIN variant AS v ON w.owner = 'variant' AND v.id ="
+         " w.owner_id LEFT JOIN scenario AS s ON w.owner = 'scenario' AND s.id = w.owner_id"
+         " ORDER BY w.parameter, w.value, 2"},
         {"sumo_collision_check", "SELECT * FROM sumo_collision_check"},
     };
     data->about = json_object();
@@ -380,6 +418,7 @@ void cp_study_data_destroy(cp_study_data *data)
     }
     free(data->risk);
     free(data->pair);
+    free(data->treated);
     free(data->scenario);
     free(data->variant);
     free(data->replication);

@@ -110,6 +110,15 @@ typedef struct cp_study_pair {
     bool treated_inside[2];                  /* these vehicles inside validity */
 } cp_study_pair;
 
+/* A vehicle of a crash that a baseline's crash became under a treatment; its crash is the
+ * baseline's, everything else its own. */
+typedef struct cp_study_treated {
+    size_t variant;
+    cp_study_vehicle vehicle;
+    double x_m; /* first contact of the treated crash, world */
+    double y_m;
+} cp_study_treated;
+
 typedef struct cp_study_data {
     json_t *about; /* the study's row, program versions, vehicle models: as stored, for reports */
     char *name;
@@ -133,10 +142,12 @@ typedef struct cp_study_data {
     size_t frontal_vehicle_count;
     size_t pair_count;
     cp_study_pair *pair; /* by crash and variant */
+    size_t treated_count;
+    cp_study_treated *treated; /* of all treated crashes, by crash, variant and role */
     size_t risk_count;
     cp_study_risk *risk; /* by name and level */
     size_t validity_count;
-    char **validity; /* [0] "inside", then the lists that occur */
+    char **validity; /* [0] "inside", then the lists that occur, treated crashes included */
 } cp_study_data;
 
 /* Read a study. The caller destroys it, also after an error. Errors: those of the store;

@@ -25,6 +25,18 @@ function theme(dark) {
   button.setAttribute("aria-label", dark ? "Switch to light colours" : "Switch to dark colours");
 }
 
+// A sentence a treatment, its name in bold; the text itself is in the page, for readers without a script.
+function answerInLines() {
+  const parent = document.getElementById("answer"), sentences = parent.textContent.trim().split("\n");
+  parent.textContent = "";
+  sentences.forEach(sentence => {
+    const line = element(parent, "span", undefined, { class: "sentence" }), name = data.variants.map(v => v.name).filter(v => sentence.startsWith(`${v}: `)).sort((a, b) => b.length - a.length)[0];
+    if (name) element(line, "strong", name);
+    line.appendChild(document.createTextNode(name ? sentence.slice(name.length) : sentence));
+  });
+}
+
+answerInLines();
 document.getElementById("question").textContent = data.study.question || "";
 options("scenario", "all", data.scenarios).onchange = event => { state.scenario = event.target.value; update(); };
 options("crash-type", "all frontal", data.crash_types).onchange = event => { state.crashType = event.target.value; update(); };

@@ -225,8 +225,7 @@ static cp_status add_slices(const cp_slice_curves *curves, size_t baseline,
 // {"x": km/h, "probability"} of a function of a speed, to draw; null of another.
 static json_t *risk_curve_json(const cp_study_risk *risk)
 {
-    if (risk->predictor != CP_PREDICTOR_DELTA_V && risk->predictor != CP_PREDICTOR_DELTA_V_X &&
-        risk->predictor != CP_PREDICTOR_CLOSING_SPEED)
+    if (!cp_predictor_is_speed(risk->predictor))
         return json_null();
     json_t *x = json_array(), *probability = json_array();
     for (double km_h = 0.0; km_h <= RISK_CURVE_END_KM_H; km_h += RISK_CURVE_STEP_KM_H) {

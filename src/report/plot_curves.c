@@ -203,19 +203,13 @@ cp_status cp_plot_corridor(cp_plot *p, cp_error *error)
 
 #define RISK_END_KM_H 100
 
-static bool is_speed(cp_predictor predictor)
-{
-    return predictor == CP_PREDICTOR_DELTA_V || predictor == CP_PREDICTOR_DELTA_V_X ||
-           predictor == CP_PREDICTOR_CLOSING_SPEED;
-}
-
 // Functions of a speed, over km/h.
 cp_status cp_plot_risk(cp_plot *p, cp_error *error)
 {
     (void)error;
     for (size_t k = 0; k < p->data->risk_count; k++) {
         const cp_study_risk *risk = &p->data->risk[k];
-        if (!is_speed(risk->predictor))
+        if (!cp_predictor_is_speed(risk->predictor))
             continue;
         char title[CP_PLOT_TITLE_SIZE];
         snprintf(title, sizeof title, "%.200s (%.200s)%s", risk->level, risk->name,

@@ -6,6 +6,7 @@
 #include "report/page_data.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 // Files of reports/ and the drawing library, embedded at build time.
 extern const unsigned char cp_page_html[];
@@ -15,16 +16,27 @@ extern const unsigned char cp_page_d3_notice[];
 extern const unsigned char cp_page_d3[];
 extern const unsigned char cp_scorecard_csv[]; /* db/validation/scorecard.csv */
 
-static cp_status write_page(const cp_study_data *data, const json_t *page_data, const char *answer,
+// What stands behind the empty line of an answer: its conditions. Ends the answer there.
+static const char *cut_conditions(char *answer)
+{
+    char *line = strstr(answer, "\n\n");
+    if (!line)
+        return "";
+    *line = '\0';
+    return line + 2;
+}
+
+static cp_status write_page(const cp_study_data *data, const json_t *page_data, char *answer,
                             const char *path, cp_error *error)
 {
+    char *conditions = cp_page_escape(cut_conditions(answer));
     char *title = cp_page_escape(data->name), *safe_answer = cp_page_escape(answer);
     char *notice = cp_page_escape((const char *)cp_page_d3_notice),
          *json = cp_page_data_text(page_data);
     char *page = NULL;
     size_t size = 0;
     cp_status status;
-    if (!title || !safe_answer || !notice || !json) {
+    if (!title || !safe_answer || !conditions || !notice || !json) {
         status = cp_fail_memory(error, "a report");
         goto done;
     }
@@ -32,6 +44,7 @@ static cp_status write_page(const cp_study_data *data, const json_t *page_data, 
         {"version", CRASHPULSE_VERSION},
         {"title", title},
         {"answer", safe_answer},
+        {"conditions", conditions},
         {"style", (const char *)cp_page_css},
         {"d3", (const char *)cp_page_d3},
         {"d3_notice", notice},
@@ -49,6 +62,7 @@ done:
     free(json);
     free(notice);
     free(safe_answer);
+    free(conditions);
     free(title);
     return status;
 }

@@ -187,6 +187,11 @@ static const char *const PREDICTOR_COLUMN[] = {
 #undef CP_PREDICTOR_COLUMN
 };
 
+bool cp_predictor_is_speed(cp_predictor predictor)
+{
+    return strstr(PREDICTOR_COLUMN[predictor], "_m_s") != NULL;
+}
+
 static cp_status read_risk(void *context, const cp_row *row, cp_error *error)
 {
     reader *r = context;

@@ -63,6 +63,9 @@ typedef enum cp_predictor {
         CP_PREDICTOR_COUNT
 } cp_predictor;
 
+/* Whether a predictor is a speed, which risk curves are drawn over. */
+bool cp_predictor_is_speed(cp_predictor predictor);
+
 /* A row of the table risk_function. */
 typedef struct cp_study_risk {
     char *name;

@@ -111,13 +111,16 @@ class Report(unittest.TestCase):
             self.browser.run("return document.getElementById('question').textContent"), question)
 
     def test_answer_and_licence_are_there(self):
-        answer = self.browser.run("return document.getElementById('answer').textContent")
+        answer, conditions = self.browser.run("return ['answer', 'conditions'].map(id => document.getElementById(id).textContent)")
         frontal = self.count("SELECT frontal_crashes FROM olc_by_variant WHERE is_baseline = 1")
         inside = self.count("SELECT count(*) FROM crash_list WHERE variant = 'baseline' AND "
                             "crash_type = 'front-front' AND validity = 'inside'")
-        self.assertIn(f"{frontal} frontal crashes with baseline ({inside} of them front-front", answer)
-        self.assertIn("failed_to_see with probability 0.05", answer)
-        self.assertIn("conditional on the assumed driver errors", answer)
+        # A sentence a treatment, its interval first; what it all rests on behind it, once.
+        self.assertRegex(answer, r"^aeb: \d\.\d\d to \d\.\d\d times the rate of frontal crashes with baseline \(95 % interval; estimate ")
+        self.assertEqual(answer.count("\n"), 0)
+        self.assertIn(f"{frontal} frontal crashes with baseline ({inside} of them front-front", conditions)
+        self.assertIn("failed_to_see with probability 0.05", conditions)
+        self.assertIn("conditional on the assumed driver errors", conditions)
         self.assertIn("Copyright 2010-2017 Mike Bostock", self.page)
         # Injuries have a section of their own; none is said of OLC.
         for section in ("h-rates", "h-quantiles", "h-contrasts"):

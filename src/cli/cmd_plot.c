@@ -27,7 +27,8 @@ static const struct argp_option OPTIONS[] = {
     {"scenario", 's', "NAME", 0, "crashes and exposure of this scenario only", 0},
     {"where", 'w', "SQL", 0, "only vehicles for which this holds, as in compare", 0},
     {"inside", KEY_INSIDE, NULL, 0,
-     "describe vehicles inside the validated range only (olc, severity, map, sites, corridor); "
+     "describe vehicles inside the validated range only (olc, delta-v, severity, map, sites, "
+     "corridor; counterfactual: crashes that were inside with the baseline); "
      "differences and benefits are of all",
      0},
     {0},
@@ -49,8 +50,9 @@ static void read_kind(arguments *a, const char *text, struct argp_state *state)
         }
     }
     argp_error(state,
-               "KIND must be rates, olc, difference, severity, map, sites, outcomes, benefit, "
-               "corridor, above-olc or above-delta-v, found '%s'",
+               "KIND must be rates, olc, delta-v, difference, forest, severity, map, sites, "
+               "outcomes, benefit, risk, corridor, above-olc, above-delta-v, convergence or dose, "
+               "found '%s'",
                text);
 }
 

@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Write INPUT as the C byte array SYMBOL (zero-terminated, its size in SYMBOL_size) to OUTPUT.
-file(READ ${INPUT} hex HEX)
+# Write INPUT (one file, or several joined by |, one after the other) as the C byte array SYMBOL (zero-terminated, its size in SYMBOL_size) to OUTPUT.
+string(REPLACE "|" ";" files "${INPUT}")
+set(hex "")
+foreach(file IN LISTS files)
+    file(READ ${file} part HEX)
+    string(APPEND hex "${part}")
+endforeach()
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
 string(REGEX REPLACE "((0x..,){20})" "\\1\n" bytes "${bytes}")
 file(WRITE ${OUTPUT}

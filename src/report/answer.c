@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/answer.h"
 
+#include "report/conditions.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,18 +40,25 @@ static const char *p_phrase(double p, char text[CP_ESTIMATE_TEXT_SIZE])
     return text;
 }
 
-// "95 % interval 0.33 to 0.67", an open end as infinity.
-static void write_interval(FILE *out, cp_interval interval, int digits, const char *kind)
+// Beyond this a ratio is no more than large.
+#define RATIO_LARGE 1000.0
+
+static void write_bound(FILE *out, double bound, int digits)
 {
-    fprintf(out, "95 %% %s ", kind);
-    if (isinf(interval.low))
-        fputs("−∞", out);
+    if (isinf(bound))
+        fputs(bound < 0.0 ? "−∞" : "∞", out);
+    else if (bound > RATIO_LARGE)
+        fprintf(out, "more than %g", RATIO_LARGE);
     else
-        fprintf(out, "%.*f", digits, interval.low);
-    if (isinf(interval.high))
-        fputs(" to ∞", out);
-    else
-        fprintf(out, " to %.*f", digits, interval.high);
+        fprintf(out, "%.*f", digits, bound);
+}
+
+// "0.33 to 0.67", an open end as infinity.
+static void write_range(FILE *out, cp_interval interval, int digits)
+{
+    write_bound(out, interval.low, digits);
+    fputs(" to ", out);
+    write_bound(out, interval.high, digits);
 }
 
 static const char *plural(size_t count)
@@ -57,53 +66,79 @@ static const char *plural(size_t count)
     return count == 1 ? "" : "es";
 }
 
+// ---- a treatment with replications of its own
+// ----------------------------------------------------
+
 // What the interval trusts: resamples, or counts with the scatter that replications show.
 static const char *ratio_kind(const cp_contrast_figures *c)
 {
     if (c->rate_ratio_bootstrap.status == CP_INTERVAL_VALUE)
-        return "bootstrap interval";
+        return "Interval of the rate ratio by bootstrap over replications";
     return isnan(c->rate_ratio_widening.dispersion_1)
-               ? "Poisson interval, which trusts that replications differ by chance only,"
-               : "interval of Poisson counts widened by their dispersion";
+               ? "Interval of the rate ratio from Poisson counts, which trusts that replications "
+                 "differ by chance only"
+               : "Interval of the rate ratio from Poisson counts widened by their dispersion";
 }
 
-static void write_ratio(FILE *out, const cp_contrast_figures *c)
+static void write_ratio(FILE *out, const cp_contrast_figures *c, const char *baseline)
 {
+    char p[CP_ESTIMATE_TEXT_SIZE];
+    cp_interval interval = cp_rate_ratio_interval(c);
+    bool has = interval.status == CP_INTERVAL_VALUE;
     if (isnan(c->rate_ratio)) {
-        fputs("a rate ratio cannot be given, as the baseline had no frontal crash", out);
+        fprintf(out, "a rate ratio cannot be given, as %s had no frontal crash", baseline);
         return;
     }
-    fprintf(out, "had %.2f times the rate of frontal crashes (", c->rate_ratio);
-    write_interval(out, cp_rate_ratio_interval(c), 2, ratio_kind(c));
-    char p[CP_ESTIMATE_TEXT_SIZE];
+    if (has)
+        write_range(out, interval, 2);
+    else
+        write_bound(out, c->rate_ratio, 2);
+    fprintf(out, " times the rate of frontal crashes with %s (", baseline);
+    if (has)
+        fprintf(out, "95 %% interval; estimate %.2f", c->rate_ratio);
+    else
+        fprintf(out, "no interval: %s", cp_interval_status_text(interval.status));
     if (!isnan(c->rate_p_holm))
         fprintf(out, ", %s", p_phrase(c->rate_p_holm, p));
-    fprintf(out, "; %zu against %zu frontal crash%s)", c->frontal_crashes[1], c->frontal_crashes[0],
+    fprintf(out, ", %zu against %zu frontal crash%s)", c->frontal_crashes[1], c->frontal_crashes[0],
             plural(c->frontal_crashes[0]));
 }
 
-// Of crashes above the headline severity, with what the range leaves open.
-static void write_exceedance(FILE *out, const cp_exceedance_ratio *r)
+// Of crashes above the headline severity.
+static void write_exceedance(FILE *out, const cp_exceedance_ratio *r, const char *baseline)
 {
-    fprintf(out, "Crashes above an OLC of %g g: ", r->x);
     if (isnan(r->ratio)) {
-        fputs("none with the baseline", out);
-    } else {
-        fprintf(out, "%.2f times the rate (", r->ratio);
-        write_interval(out, r->interval, 2, "interval");
-        fprintf(out, "; %zu against %zu", r->crashes[1], r->crashes[0]);
-        // From the least that the one bound leaves to the most that the other does.
-        cp_interval reach = {CP_INTERVAL_VALUE, r->bound_interval[0].low,
-                             r->bound_interval[1].high};
-        fputs("; with severities outside the validated range unknown, ", out);
-        if (r->bound_interval[0].status == CP_INTERVAL_VALUE &&
-            r->bound_interval[1].status == CP_INTERVAL_VALUE)
-            write_interval(out, reach, 2, "interval");
-        else
-            fputs("nothing is known", out);
-        fputc(')', out);
+        fprintf(out, "none above an OLC of %g g with %s", r->x, baseline);
+        return;
     }
-    fputs(". ", out);
+    if (r->interval.status == CP_INTERVAL_VALUE)
+        write_range(out, r->interval, 2);
+    else
+        write_bound(out, r->ratio, 2);
+    fprintf(out, " times that of crashes above an OLC of %g g (estimate %.2f, %zu against %zu)",
+            r->x, r->ratio, r->crashes[1], r->crashes[0]);
+}
+
+// What the range leaves open of that.
+static void bound_condition(cp_conditions *to, const char *treatment, const cp_exceedance_ratio *r)
+{
+    char stem[160];
+    cp_condition_draft d;
+    if (isnan(r->ratio) || !cp_condition_begin(&d, to))
+        return;
+    snprintf(stem, sizeof stem,
+             "With severities outside the validated range unknown, the ratio of crashes above %g g "
+             "may be anything from",
+             r->x);
+    // From the least that the one bound leaves to the most that the other does.
+    cp_interval reach = {CP_INTERVAL_VALUE, 0.0, INFINITY};
+    if (r->bound_interval[0].status == CP_INTERVAL_VALUE &&
+        r->bound_interval[1].status == CP_INTERVAL_VALUE) {
+        reach.low = r->bound_interval[0].low;
+        reach.high = r->bound_interval[1].high;
+    }
+    write_range(d.out, reach, 2);
+    cp_condition_end(&d, to, treatment, stem);
 }
 
 // A median that censoring hides is said in words.
@@ -116,141 +151,231 @@ static void write_median(FILE *out, cp_estimate median)
         fprintf(out, "%s g", cp_estimate_text(median, 1, text));
 }
 
-// What of a figure's uncertainty is the traffic's and what the crash model's. unit: " g" or "".
-static void write_model_part(FILE *out, const char *what, const char *unit, int digits,
-                             const cp_model_part *p, const cp_comparison *comparison)
+static void write_severity(FILE *out, const cp_contrast_figures *c)
 {
-    char text[CP_ESTIMATE_TEXT_SIZE];
-    if (p->sets == 0)
+    char p[CP_ESTIMATE_TEXT_SIZE];
+    const cp_contrast *olc = &c->severity[CP_QUANTITY_OLC];
+    const cp_superiority *s = &olc->superiority;
+    if (isnan(s->cliffs_delta)) {
+        fputs("its OLC cannot be compared: no scenario has vehicles with an OLC in both", out);
         return;
-    if (p->status != CP_INTERVAL_VALUE) {
-        fprintf(out,
-                "What the %zu parameter sets of the vehicle models say of %s is not known (%s)",
-                p->sets, what, cp_interval_status_text(p->status));
-    } else if (p->combined.status == CP_INTERVAL_VALUE) {
-        fprintf(out, "With the uncertainty of the crash model %s is %s%s (", what,
-                cp_estimate_text(p->estimate, digits, text), unit);
-        write_interval(out, p->combined, digits, "interval");
-        fputs("): from replications ", out);
-        write_interval(out, p->replications, digits, "interval");
-        fprintf(
-            out,
-            ", from the model’s ensemble of %zu parameter sets ±%.*f%s, combined as the root of "
-            "the sum of squares",
-            p->sets, digits, p->half_width, unit);
-    } else {
-        fprintf(
-            out,
-            "Of the uncertainty of %s, ±%.*f%s (95 %%) is the crash model’s, by its ensemble of "
-            "%zu parameter sets; replications give no interval (%s)",
-            what, digits, p->half_width, unit, p->sets,
-            cp_interval_status_text(p->combined.status));
     }
+    fputs("where it crashes, OLC with Cliff’s δ ", out);
+    if (s->status == CP_INTERVAL_VALUE) {
+        write_range(out, s->interval, 2);
+        fprintf(out, " (estimate %.2f, %s; median ", s->cliffs_delta,
+                p_phrase(c->severity_p_holm[CP_QUANTITY_OLC], p));
+    } else if (!isnan(s->p)) {
+        fprintf(out, "%.2f (completely apart, which leaves no interval, %s at most; median ",
+                s->cliffs_delta, p_phrase(c->severity_p_holm[CP_QUANTITY_OLC], p));
+    } else {
+        fprintf(out, "%.2f (%s for an interval or a test; median ", s->cliffs_delta,
+                cp_interval_status_text(s->status));
+    }
+    write_median(out, olc->median[1]);
+    fputs(" against ", out);
+    write_median(out, olc->median[0]);
+    fprintf(out, ", %zu against %zu vehicles)", olc->compared[1], olc->compared[0]);
+}
+
+// What is missing is said: vehicles of scenarios that only one has, and those without an OLC.
+static void write_missing(FILE *out, const cp_study_data *data, const cp_comparison *comparison,
+                          const cp_contrast_figures *c)
+{
+    const cp_contrast *olc = &c->severity[CP_QUANTITY_OLC];
+    const size_t variant[2] = {comparison->baseline, c->variant};
+    const char *separator = "Vehicles: ";
+    for (int g = 0; g < 2; g++) {
+        const cp_variant_figures *figures = cp_comparison_variant(comparison, variant[g]);
+        const char *name = data->variant[variant[g]].name;
+        size_t with = figures->description[CP_QUANTITY_OLC][CP_SCOPE_ALL].count;
+        if (with > olc->compared[g]) {
+            fprintf(out,
+                    "%s%zu of %s not compared, for want of a partner or of a crash of the other in "
+                    "their scenario",
+                    separator, with - olc->compared[g], name);
+            separator = "; ";
+        }
+        if (figures->simulation_failed > 0) {
+            fprintf(out, "%s%zu of %s without a simulated crash", separator,
+                    figures->simulation_failed, name);
+            separator = "; ";
+        }
+    }
+}
+
+static void write_compared(FILE *out, const cp_study_data *data, const cp_contrast_figures *c)
+{
+    if (data->paired)
+        fprintf(out, "Compared over the %zu seeds that both finished", c->replications[1]);
+    else
+        fprintf(out, "Compared over %zu against %zu replications", c->replications[1],
+                c->replications[0]);
+    if (c->partnerless[0] + c->partnerless[1] > 0)
+        fprintf(out, " (%zu more without a partner are left out)",
+                c->partnerless[0] + c->partnerless[1]);
+}
+
+// ---- the crash model's part
+// ----------------------------------------------------------------------
+
+// Vehicles whose model has no ensemble.
+static void write_without_sets(FILE *out, const cp_comparison *comparison)
+{
     size_t without = 0;
     for (size_t k = 0; k < comparison->variant_count; k++)
         without += comparison->variant[k].without_sets;
     if (without > 0)
         fprintf(out, "; %zu vehicle%s of models without such sets count as certain", without,
                 without == 1 ? "" : "s");
-    fputs(".\n", out);
+}
+
+/* A figure whose uncertainty is split. */
+typedef struct split_figure {
+    const char *what;
+    const char *unit; /* " g" or "" */
+    int digits;
+    const cp_model_part *part;
+} split_figure;
+
+// What of a figure's uncertainty is the traffic's and what the crash model's.
+static void write_both_parts(FILE *out, const split_figure *f)
+{
+    char text[CP_ESTIMATE_TEXT_SIZE];
+    const cp_model_part *p = f->part;
+    fprintf(out, "With the uncertainty of the crash model %s is ", f->what);
+    write_range(out, p->combined, f->digits);
+    fprintf(out, "%s (95 %%; estimate %s): from replications 95 %% interval ", f->unit,
+            cp_estimate_text(p->estimate, f->digits, text));
+    write_range(out, p->replications, f->digits);
+    fprintf(out,
+            ", from the model’s ensemble of %zu parameter sets ±%.*f%s, combined as the root of "
+            "the sum of squares",
+            p->sets, f->digits, p->half_width, f->unit);
+}
+
+static void model_condition(cp_conditions *to, const char *treatment,
+                            const cp_comparison *comparison, const split_figure *f)
+{
+    char stem[320];
+    const cp_model_part *p = f->part;
+    cp_condition_draft d;
+    if (p->sets == 0 || !cp_condition_begin(&d, to))
+        return;
+    bool known = p->status == CP_INTERVAL_VALUE, both = p->combined.status == CP_INTERVAL_VALUE;
+    if (!known) {
+        fprintf(d.out,
+                "What the %zu parameter sets of the vehicle models say of %s is not known (%s)",
+                p->sets, f->what, cp_interval_status_text(p->status));
+    } else if (both) {
+        write_both_parts(d.out, f);
+    } else {
+        snprintf(stem, sizeof stem,
+                 "Replications give no interval of %s (%s); of its uncertainty the crash model’s "
+                 "part, by its ensemble of %zu parameter sets, is (95 %%)",
+                 f->what, cp_interval_status_text(p->combined.status), p->sets);
+        fprintf(d.out, "±%.*f%s", f->digits, p->half_width, f->unit);
+    }
+    write_without_sets(d.out, comparison);
+    cp_condition_end(&d, to, treatment, known && !both ? stem : NULL);
 }
 
 // Of the difference of medians; where replications are too few for its interval, of Cliff's delta.
-static void write_model_of_contrast(FILE *out, const cp_contrast_figures *c,
-                                    const cp_comparison *comparison)
+static void model_condition_of_contrast(cp_conditions *to, const char *treatment,
+                                        const cp_comparison *comparison,
+                                        const cp_contrast_figures *c)
 {
-    if (c->median_model.combined.status != CP_INTERVAL_VALUE &&
-        c->delta_model.combined.status == CP_INTERVAL_VALUE)
-        write_model_part(out, "Cliff’s δ", "", 2, &c->delta_model, comparison);
-    else
-        write_model_part(out, "the difference of the medians", " g", 1, &c->median_model,
-                         comparison);
-}
-
-static void write_severity(FILE *out, const cp_study_data *data, const cp_comparison *comparison,
-                           const cp_contrast_figures *c)
-{
-    const cp_contrast *olc = &c->severity[CP_QUANTITY_OLC];
-    const cp_superiority *s = &olc->superiority;
-    const char *treatment = data->variant[c->variant].name;
-    const char *baseline = data->variant[comparison->baseline].name;
-    if (isnan(s->cliffs_delta)) {
-        fputs("Its OLC cannot be compared: no scenario has vehicles with an OLC in both.\n", out);
-        return;
-    }
-    fputs("Median OLC of the frontally struck vehicles", out);
-    if (comparison->slice.scenario == CP_SLICE_ALL && data->scenario_count > 1)
-        fputs(", at the same mix of scenarios", out);
-    fputs(": ", out);
-    write_median(out, olc->median[1]);
-    fputs(" against ", out);
-    write_median(out, olc->median[0]);
-    fprintf(out, " (Cliff’s δ = %.2f, ", s->cliffs_delta);
-    if (s->status == CP_INTERVAL_VALUE) {
-        char p[CP_ESTIMATE_TEXT_SIZE];
-        write_interval(out, s->interval, 2, "interval");
-        fprintf(out, ", %s", p_phrase(c->severity_p_holm[CP_QUANTITY_OLC], p));
-    } else if (!isnan(s->p)) {
-        char p[CP_ESTIMATE_TEXT_SIZE];
-        fprintf(out, "completely apart, which leaves no interval, %s at most",
-                p_phrase(c->severity_p_holm[CP_QUANTITY_OLC], p));
-    } else {
-        fprintf(out, "%s for an interval or a test", cp_interval_status_text(s->status));
-    }
-    fprintf(out, "; %zu against %zu vehicles", olc->compared[1], olc->compared[0]);
-
-    // What is missing is said: vehicles of scenarios that only one has, and those without an OLC.
-    const cp_variant_figures *figures[2] = {cp_comparison_variant(comparison, comparison->baseline),
-                                            cp_comparison_variant(comparison, c->variant)};
-    const char *name[2] = {baseline, treatment};
-    for (int g = 0; g < 2; g++) {
-        size_t with = figures[g]->description[CP_QUANTITY_OLC][CP_SCOPE_ALL].count;
-        if (with > olc->compared[g])
-            fprintf(out,
-                    "; %zu of %s not compared, for want of a partner or of a crash of the "
-                    "other in their scenario",
-                    with - olc->compared[g], name[g]);
-        if (figures[g]->simulation_failed > 0)
-            fprintf(out, "; %zu of %s without a simulated crash", figures[g]->simulation_failed,
-                    name[g]);
-    }
-    fputs(").\n", out);
-    write_model_of_contrast(out, c, comparison);
+    bool of_delta = c->median_model.combined.status != CP_INTERVAL_VALUE &&
+                    c->delta_model.combined.status == CP_INTERVAL_VALUE;
+    const split_figure f =
+        of_delta ? (split_figure){"Cliff’s δ", "", 2, &c->delta_model}
+                 : (split_figure){"the difference of the medians", " g", 1, &c->median_model};
+    model_condition(to, treatment, comparison, &f);
 }
 
 static void write_contrast(FILE *out, const cp_study_data *data, const cp_comparison *comparison,
                            const cp_contrast_figures *c)
 {
-    fprintf(out, "Against %s, over ", data->variant[comparison->baseline].name);
-    if (data->paired)
-        fprintf(out, "the %zu seeds that both finished", c->replications[1]);
-    else
-        fprintf(out, "%zu against %zu replications", c->replications[1], c->replications[0]);
-    if (c->partnerless[0] + c->partnerless[1] > 0)
-        fprintf(out, " (%zu more without a partner are left out)",
-                c->partnerless[0] + c->partnerless[1]);
-    fprintf(out, ", %s%s ", data->variant[c->variant].name, isnan(c->rate_ratio) ? ":" : "");
-    write_ratio(out, c);
-    fputs(". ", out);
-    write_exceedance(out, &c->above[CP_EXCEEDED_OLC]);
-    write_severity(out, data, comparison, c);
+    const char *baseline = data->variant[comparison->baseline].name;
+    fprintf(out, "%s: ", data->variant[c->variant].name);
+    write_ratio(out, c, baseline);
+    fputs("; ", out);
+    write_exceedance(out, &c->above[CP_EXCEEDED_OLC], baseline);
+    fputs("; ", out);
+    write_severity(out, c);
+    fputs(".\n", out);
+}
+
+#define DELTA_IS                                                                                      \
+    "Cliff’s δ, from -1 (every vehicle struck on the front less severely) to 1, compares the OLC " \
+    "of those vehicles"
+
+// The conditions of a treatment, one text each, so that equal ones are said once.
+static void contrast_conditions(cp_conditions *to, const cp_study_data *data,
+                                const cp_comparison *comparison, const cp_contrast_figures *c)
+{
+    const char *name = data->variant[c->variant].name;
+    cp_condition_draft d;
+    if (cp_condition_begin(&d, to)) {
+        write_compared(d.out, data, c);
+        cp_condition_end(&d, to, name, NULL);
+    }
+    if (!isnan(c->rate_ratio))
+        cp_conditions_add(to, name, ratio_kind(c), NULL);
+    bool mixed = comparison->slice.scenario == CP_SLICE_ALL && data->scenario_count > 1;
+    if (!isnan(c->severity[CP_QUANTITY_OLC].superiority.cliffs_delta))
+        cp_conditions_add(to, name, mixed ? DELTA_IS ", at the same mix of scenarios" : DELTA_IS,
+                          NULL);
+    if (cp_condition_begin(&d, to)) {
+        write_missing(d.out, data, comparison, c);
+        cp_condition_end(&d, to, name, NULL);
+    }
+    bound_condition(to, name, &c->above[CP_EXCEEDED_OLC]);
+    model_condition_of_contrast(to, name, comparison, c);
+}
+
+// ---- a treatment of the baseline's crashes
+// -------------------------------------------------------
+
+static void write_change(FILE *out, const cp_counterfactual_figures *c)
+{
+    char p[CP_ESTIMATE_TEXT_SIZE];
+    const cp_paired *olc = &c->olc_g[CP_PAIRED_ALL];
+    bool has = olc->hodges_lehmann_interval.status == CP_INTERVAL_VALUE;
+    if (isnan(olc->hodges_lehmann))
+        return;
+    fputs("; the OLC of a crash changed by ", out);
+    if (has) {
+        write_range(out, olc->hodges_lehmann_interval, 1);
+        fprintf(out, " g (95 %% interval; estimate %.1f g", olc->hodges_lehmann);
+    } else {
+        fprintf(out, "%.1f g (%s for an interval", olc->hodges_lehmann,
+                cp_interval_status_text(olc->hodges_lehmann_interval.status));
+    }
+    if (!isnan(c->p_holm[CP_PAIRED_ALL]))
+        fprintf(out, ", %s", p_phrase(c->p_holm[CP_PAIRED_ALL], p));
+    fputc(')', out);
 }
 
 // What a treatment made of the baseline's crashes: outcomes first, then severity over all of them.
 static void write_pairs(FILE *out, const cp_study_data *data, const cp_comparison *comparison,
                         const cp_counterfactual_figures *c)
 {
-    double valid = c->valid ? (double)c->valid : NAN, percent = 100.0 / valid;
-    const cp_paired *olc = &c->olc_g[CP_PAIRED_ALL];
-    fprintf(out, "With %s %zu of %zu valid baseline crashes were avoided (",
-            data->variant[c->variant].name, c->outcome[CP_OUTCOME_AVOIDED], c->valid);
-    if (c->valid)
-        fprintf(out, "%.0f %%", percent * (double)c->outcome[CP_OUTCOME_AVOIDED]);
     cp_interval share = c->share[CP_OUTCOME_AVOIDED];
+    size_t avoided = c->outcome[CP_OUTCOME_AVOIDED];
+    double percent = c->valid ? 100.0 / (double)c->valid : NAN;
+    fprintf(out, "%s: ", data->variant[c->variant].name);
     if (share.status == CP_INTERVAL_VALUE)
-        fprintf(out, ", 95 %% interval %.0f to %.0f", 100.0 * share.low, 100.0 * share.high);
+        fprintf(out, "%.0f to %.0f %% of the frontal crashes with %s avoided (95 %% interval; ",
+                100.0 * share.low, 100.0 * share.high, data->variant[comparison->baseline].name);
+    else
+        fprintf(out, "of the frontal crashes with %s avoided (no interval; ",
+                data->variant[comparison->baseline].name);
+    fprintf(out, "%zu of %zu valid ones", avoided, c->valid);
+    if (c->valid)
+        fprintf(out, ", %.0f %%", percent * (double)avoided);
     fprintf(out,
-            "), %zu mitigated, %zu unchanged, %zu aggravated by closing speed (%zu by OLC) and "
+            "), %zu mitigated, %zu unchanged, %zu aggravated by closing speed (%zu by OLC), "
             "%zu with another opponent",
             c->outcome[CP_OUTCOME_MITIGATED], c->outcome[CP_OUTCOME_UNCHANGED],
             c->outcome[CP_OUTCOME_AGGRAVATED], c->outcome_olc[CP_OUTCOME_AGGRAVATED],
@@ -261,36 +386,46 @@ static void write_pairs(FILE *out, const cp_study_data *data, const cp_compariso
     if (c->vanished_crashes > 0.0)
         fprintf(out, ", and %g crash%s between others vanished", c->vanished_crashes,
                 plural((size_t)c->vanished_crashes));
-    if (!isnan(olc->hodges_lehmann)) {
-        char p[CP_ESTIMATE_TEXT_SIZE];
-        fprintf(out,
-                "; the OLC of the crash (the larger of its frontally struck vehicles) changed by "
-                "%.1f g (Hodges–Lehmann, avoided = 0 g",
-                olc->hodges_lehmann);
-        if (olc->hodges_lehmann_interval.status == CP_INTERVAL_VALUE)
-            fprintf(out, ", 95 %% interval %.1f to %.1f", olc->hodges_lehmann_interval.low,
-                    olc->hodges_lehmann_interval.high);
-        else
-            fprintf(out, ", %s for an interval",
-                    cp_interval_status_text(olc->hodges_lehmann_interval.status));
-        if (!isnan(c->p_holm[CP_PAIRED_ALL]))
-            fprintf(out, ", %s", p_phrase(c->p_holm[CP_PAIRED_ALL], p));
-        fputc(')', out);
-    }
-    if (c->crashes > c->valid)
-        fprintf(out, "; %zu more could not be judged", c->crashes - c->valid);
-    fprintf(out, ". Of the %zu valid ones inside the validated range with %s, %zu were avoided.\n",
-            c->inside_valid, "the baseline", c->inside_outcome[CP_OUTCOME_AVOIDED]);
-    write_model_part(out, "the change of OLC", " g", 1, &c->olc_model[CP_PAIRED_ALL], comparison);
+    write_change(out, c);
+    fputs(".\n", out);
 }
+
+static void pair_conditions(cp_conditions *to, const cp_study_data *data,
+                            const cp_comparison *comparison, const cp_counterfactual_figures *c)
+{
+    const char *name = data->variant[c->variant].name;
+    cp_condition_draft d;
+    if (c->crashes > c->valid && cp_condition_begin(&d, to)) {
+        fprintf(d.out, "%zu", c->crashes - c->valid);
+        cp_condition_end(&d, to, name, "Crashes that could not be judged:");
+    }
+    if (!isnan(c->olc_g[CP_PAIRED_ALL].hodges_lehmann))
+        cp_conditions_add(to, name,
+                          "Change of OLC: Hodges and Lehmann’s estimate over all valid pairs, of "
+                          "the larger of a crash’s frontally struck vehicles, avoided = 0 g",
+                          NULL);
+    if (cp_condition_begin(&d, to)) {
+        char stem[160];
+        snprintf(stem, sizeof stem, "Of those inside the validated range with %.80s avoided:",
+                 data->variant[comparison->baseline].name);
+        fprintf(d.out, "%zu of %zu", c->inside_outcome[CP_OUTCOME_AVOIDED], c->inside_valid);
+        cp_condition_end(&d, to, name, stem);
+    }
+    const split_figure change = {"the change of OLC", " g", 1, &c->olc_model[CP_PAIRED_ALL]};
+    model_condition(to, name, comparison, &change);
+}
+
+// ---- what it all rests on
+// ------------------------------------------------------------------------
 
 static void write_counts(FILE *out, const cp_study_data *data, const cp_comparison *comparison)
 {
     for (size_t k = 0; k < comparison->variant_count; k++) {
         const cp_variant_figures *v = &comparison->variant[k];
         fprintf(out,
-                "%s%zu frontal crash%s with %s (%zu of them front-front with both vehicles "
-                "inside the validated range)",
+                k == 0 ? "%s%zu frontal crash%s with %s (%zu of them front-front with both "
+                         "vehicles inside the validated range)"
+                       : "%s%zu frontal crash%s with %s (%zu)",
                 k == 0                              ? ""
                 : k + 1 < comparison->variant_count ? ", "
                                                     : " and ",
@@ -362,12 +497,22 @@ cp_status cp_comparison_answer(const cp_study_data *data, const cp_comparison *c
     if (!out)
         return cp_fail_memory(error, "the answer of a comparison");
 
-    // Contrasts first: they are what was asked.
-    for (size_t k = 0; k < comparison->contrast_count; k++)
+    // A sentence a treatment first: they are what was asked. Then what holds for them, once.
+    cp_conditions conditions = {0};
+    for (size_t k = 0; k < comparison->contrast_count; k++) {
         write_contrast(out, data, comparison, &comparison->contrast[k]);
-    for (size_t k = 0; k < comparison->counterfactual_count; k++)
+        contrast_conditions(&conditions, data, comparison, &comparison->contrast[k]);
+    }
+    for (size_t k = 0; k < comparison->counterfactual_count; k++) {
         write_pairs(out, data, comparison, &comparison->counterfactual[k]);
-    // A paragraph each, then one on what it all rests on.
+        pair_conditions(&conditions, data, comparison, &comparison->counterfactual[k]);
+    }
+    size_t treatments = comparison->contrast_count + comparison->counterfactual_count;
+    if (treatments > 0)
+        fputc('\n', out);
+    cp_conditions_write(out, &conditions, treatments);
+    bool no_memory = conditions.failed;
+    cp_conditions_destroy(&conditions);
     fputs("In all: ", out);
     write_counts(out, data, comparison);
     if (data->unfinished > 0)
@@ -376,8 +521,8 @@ cp_status cp_comparison_answer(const cp_study_data *data, const cp_comparison *c
     fputs(". All conditional on the assumed driver errors (", out);
     write_driver_errors(out, data, comparison->slice);
     fputs("): these are not accident rates of real traffic.", out);
-    int failed = ferror(out);
-    if (fclose(out) != 0 || failed) {
+    no_memory |= ferror(out) != 0;
+    if (fclose(out) != 0 || no_memory) {
         free(*answer);
         *answer = NULL;
         return cp_fail_memory(error, "the answer of a comparison");

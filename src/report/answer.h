@@ -4,10 +4,11 @@
 
 #include "report/comparison.h"
 
-/* A comparison in a few sentences: a paragraph (ended by a new line) for each treatment, what
- * changed and what could not be compared; then how many crashes it rests on, how many of them are
- * front-front inside the validated range, and the driver errors the rates are conditional on.
- * UTF-8; the caller frees. Error: CP_NO_MEMORY. */
+/* A comparison in a few sentences. First a sentence (ended by a new line) for each treatment, its
+ * intervals before the estimates; then, behind an empty line, the conditions, each once: what was
+ * compared and what could not be, what the intervals trust, what the validated range and the crash
+ * model leave open, how many crashes it rests on and the driver errors the rates are conditional
+ * on. UTF-8; the caller frees. Error: CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_comparison_answer(const cp_study_data *data,
                                              const cp_comparison *comparison, char **answer,
                                              cp_error *error);

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/counterfactual.h"
 
-#include "report/slice_sample.h"
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -343,6 +341,25 @@ static cp_status adjust(cp_comparison *comparison, cp_error *error)
     for (size_t k = 0; k < count; k++)
         *p_of(&c[k / P_OF_TREATMENT], k % P_OF_TREATMENT, true) = p[k];
     free(p);
+    return status;
+}
+
+cp_status cp_counterfactual_outcomes(const cp_study_data *data, cp_slice slice,
+                                     const cp_replication_set *set,
+                                     cp_counterfactual_figures *figures, cp_error *error)
+{
+    const cp_comparison comparison = {.slice = slice};
+    pairs p = {.data = data, .comparison = &comparison, .set = set};
+    p.pair = calloc(data->pair_count + 1, sizeof *p.pair);
+    p.cluster = calloc(data->pair_count + 1, sizeof *p.cluster);
+    cp_status status = p.pair && p.cluster ? CP_OK : cp_fail_memory(error, "counterfactual pairs");
+    if (status == CP_OK) {
+        gather(&p, figures->variant);
+        count_outcomes(&p, figures);
+        status = figure_shares(&p, false, figures->share, error);
+    }
+    free(p.pair);
+    free(p.cluster);
     return status;
 }
 

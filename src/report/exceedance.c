@@ -93,6 +93,16 @@ static double count(const severities *list, double x, counting how, double *even
     return all;
 }
 
+static void figure_interval(const cp_replication_set *set, const double *events, cp_exceedance *e)
+{
+    cp_exposure exposure = {set->count, events, set->vehicle_km};
+    cp_widening widening;
+    e->rate = cp_rate(&exposure) * CP_RATE_PER_KM;
+    e->interval = cp_rate_widened(&exposure, set->stratum, 0.95, &widening);
+    e->interval.low *= CP_RATE_PER_KM;
+    e->interval.high *= CP_RATE_PER_KM;
+}
+
 static cp_exceedance exceedance_at(const severities *list, const cp_replication_set *set, double x,
                                    double *events)
 {
@@ -100,12 +110,7 @@ static cp_exceedance exceedance_at(const severities *list, const cp_replication_
     e.least = (size_t)count(list, x, COUNT_LEAST, events, set->count);
     e.most = (size_t)count(list, x, COUNT_MOST, events, set->count);
     e.crashes = (size_t)count(list, x, COUNT_ABOVE, events, set->count);
-    cp_exposure exposure = {set->count, events, set->vehicle_km};
-    cp_widening widening;
-    e.rate = cp_rate(&exposure) * CP_RATE_PER_KM;
-    e.interval = cp_rate_widened(&exposure, set->stratum, 0.95, &widening);
-    e.interval.low *= CP_RATE_PER_KM;
-    e.interval.high *= CP_RATE_PER_KM;
+    figure_interval(set, events, &e);
     return e;
 }
 
@@ -127,6 +132,24 @@ cp_status cp_exceedance_figure(const cp_study_data *data, const cp_replication_s
     free(events);
     free(list.crash);
     return status;
+}
+
+void cp_exceedance_curve(const cp_sample *sample, const cp_replication_set *set, int what,
+                         double *events, cp_exceedance curve[CP_EXCEEDANCE_POINTS])
+{
+    for (size_t k = 0; k < CP_EXCEEDANCE_POINTS; k++) {
+        cp_exceedance *e = &curve[k];
+        *e = (cp_exceedance){.x = (double)k * STEP[what]};
+        for (size_t c = 0; c < set->count; c++)
+            events[c] = 0.0;
+        for (size_t j = 0; j < sample->count; j++)
+            if (sample->value[j] > e->x) {
+                events[sample->cluster[j]] += 1.0;
+                e->crashes++;
+            }
+        e->least = e->most = e->crashes;
+        figure_interval(set, events, e);
+    }
 }
 
 /* The two arms of a contrast. */

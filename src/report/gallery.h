@@ -17,14 +17,14 @@ CP_MUST_CHECK cp_status cp_gallery_json(cp_store *store, const cp_study_data *da
                                         json_t **gallery, cp_error *error);
 
 /* Decelerations over time, CFC60, of up to CP_CORRIDOR_PULSES_MAX sampled frontally struck vehicles
- * of each variant; read once, used for every slice. */
+ * of each variant, treated crashes included; read once, used for every slice. */
 #define CP_CORRIDOR_PULSES_MAX 400
 #define CP_CORRIDOR_INTERVAL_S 0.002
 #define CP_CORRIDOR_POINTS 76 /* 0 ... 150 ms */
 
 typedef struct cp_corridor_pulses {
     size_t count;
-    size_t *vehicle;                /* of the study, ascending */
+    size_t *vehicle;                /* of the study, ascending; treated ones behind all others */
     float (*g)[CP_CORRIDOR_POINTS]; /* deceleration along x, NAN behind its end */
 } cp_corridor_pulses;
 
@@ -33,7 +33,8 @@ CP_MUST_CHECK cp_status cp_corridor_read(cp_store *store, const cp_study_data *d
                                          cp_corridor_pulses *pulses, cp_error *error);
 void cp_corridor_destroy(cp_corridor_pulses *pulses);
 
-/* {"n", "p10": […], "p50": […], "p90": […]} over the pulses for which chosen[vehicle] holds. */
+/* {"n", "p10": […], "p50": […], "p90": […]} over the pulses for which chosen[vehicle] holds,
+ * an array over the study's vehicles and then its treated ones. */
 json_t *cp_corridor_json(const cp_corridor_pulses *pulses, const unsigned char *chosen);
 
 #endif

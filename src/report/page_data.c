@@ -12,13 +12,15 @@
 #include "report/network_background.h"
 #include "report/paired_points.h"
 #include "report/query_json.h"
+#include "report/slice_curves.h"
 #include "report/slice_sample.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define ECDF_POINTS 240
+#define RISK_CURVE_END_KM_H 100.0
+#define RISK_CURVE_STEP_KM_H 1.0
 
 // Types that have a frontally struck vehicle; they come first in the alphabet.
 static size_t frontal_types(const cp_study_data *data)
@@ -62,12 +64,6 @@ static json_t *queries_json(void)
         json_array_append_new(array, json_pack("{s:s, s:s}", "name", CP_EXAMPLE_QUERY[k].name,
                                                "sql", CP_EXAMPLE_QUERY[k].sql));
     return array;
-}
-
-// Digits enough to draw: coordinates to a ten-thousandth.
-static json_t *drawn_json(double value)
-{
-    return cp_number_json(round(value * 1e4) / 1e4);
 }
 
 // Which frontal crashes are drawn: by the seed and their id only, so that each is with every
@@ -119,99 +115,29 @@ static json_t *vehicles_json(const cp_study_data *data, const bool *drawn)
         column[c] = json_array();
         json_object_set_new(object, NAME[c], column[c]);
     }
-    for (size_t k = 0; k < data->vehicle_count; k++) {
-        const cp_study_vehicle *v = &data->vehicle[k];
+    // Those of the replications, then what the treatments made of crashes of the baseline; these
+    // stand in the scenario and under the type of the baseline's crash.
+    for (size_t k = 0; k < data->vehicle_count + data->treated_count; k++) {
+        bool treated = k >= data->vehicle_count;
+        const cp_study_treated *t = treated ? &data->treated[k - data->vehicle_count] : NULL;
+        const cp_study_vehicle *v = treated ? &t->vehicle : &data->vehicle[k];
         const cp_study_crash *crash = &data->crash[v->crash];
         if (!v->frontal || !drawn[v->crash])
             continue;
         const cp_study_replication *r = &data->replication[crash->replication];
-        json_array_append_new(column[VARIANT], json_integer((json_int_t)r->variant));
-        json_array_append_new(column[SCENARIO], json_integer((json_int_t)r->scenario));
-        json_array_append_new(column[TYPE], json_integer((json_int_t)crash->crash_type));
-        json_array_append_new(column[ROLE], json_integer(v->role == 'b'));
-        json_array_append_new(column[STATUS], json_integer(v->olc));
-        json_array_append_new(column[OLC], drawn_json(v->olc_g));
-        json_array_append_new(column[CLOSING], drawn_json(cp_km_h_from_m_s(v->closing_speed_m_s)));
-        json_array_append_new(column[OFFSET], drawn_json(v->lateral_offset_m));
-        json_array_append_new(column[ANGLE], drawn_json(cp_deg_from_rad(v->angle_rad)));
+        const size_t index[] = {treated ? t->variant : r->variant, r->scenario, crash->crash_type,
+                                v->role == 'b', v->olc};
+        const double number[] = {v->olc_g, cp_km_h_from_m_s(v->closing_speed_m_s),
+                                 v->lateral_offset_m, cp_deg_from_rad(v->angle_rad)};
+        for (size_t c = VARIANT; c <= STATUS; c++)
+            json_array_append_new(column[c], json_integer((json_int_t)index[c]));
+        for (size_t c = OLC; c <= ANGLE; c++)
+            json_array_append_new(column[c], cp_drawn_json(number[c - OLC]));
         json_array_append_new(column[VALIDITY], json_integer((json_int_t)v->validity));
-        json_array_append_new(column[X], drawn_json(crash->x_m));
-        json_array_append_new(column[Y], drawn_json(crash->y_m));
+        json_array_append_new(column[X], cp_drawn_json(treated ? t->x_m : crash->x_m));
+        json_array_append_new(column[Y], cp_drawn_json(treated ? t->y_m : crash->y_m));
     }
     return object;
-}
-
-/* What of a slice needs more than its comparison. */
-typedef struct slice_extras {
-    const cp_study_data *data;
-    const cp_corridor_pulses *pulses;
-    unsigned char *chosen; /* room for one mark a vehicle */
-} slice_extras;
-
-// Steps of a distribution function: [[x, …], [share up to x, …]], thinned out to ECDF_POINTS;
-// censored vehicles lie below the first x.
-static json_t *ecdf_json(const cp_sample *sample)
-{
-    json_t *x = json_array(), *share = json_array();
-    size_t censored = cp_sample_censored(sample), values = sample->count - censored;
-    size_t steps = values < ECDF_POINTS ? values : ECDF_POINTS;
-    for (size_t k = 0; k < steps; k++) {
-        size_t place =
-            steps == values
-                ? k
-                : (size_t)llround((double)k * (double)(values - 1) / (double)(steps - 1));
-        json_array_append_new(x, drawn_json(sample->value[censored + place]));
-        json_array_append_new(share,
-                              drawn_json((double)(censored + place + 1) / (double)sample->count));
-    }
-    return json_pack("{s:o, s:o, s:I, s:I}", "x", x, "share", share, "n", (json_int_t)sample->count,
-                     "censored", (json_int_t)censored);
-}
-
-// Distribution and pulse corridor of one variant, one scope of a slice.
-static cp_status add_curves(const slice_extras *e, cp_slice slice, size_t variant, int scope,
-                            json_t *ecdf, json_t *corridor, cp_error *error)
-{
-    cp_replication_set set;
-    cp_sample sample = {0};
-    cp_status status = cp_replication_set_create(e->data, slice, variant, &set, error);
-    if (status != CP_OK)
-        return status;
-    status = cp_slice_sample(e->data, &set, slice, scope, CP_QUANTITY_OLC, &sample, error);
-    if (status == CP_OK) {
-        json_object_set_new(ecdf, CP_SCOPE_TEXT[scope], ecdf_json(&sample));
-        for (size_t k = 0; k < e->data->vehicle_count; k++) {
-            const cp_study_vehicle *v = &e->data->vehicle[k];
-            const cp_study_crash *crash = &e->data->crash[v->crash];
-            e->chosen[k] = v->frontal &&
-                           e->data->replication[crash->replication].variant == variant &&
-                           (scope == CP_SCOPE_ALL || v->validity == 0) &&
-                           cp_slice_has_crash(e->data, slice, crash);
-        }
-        json_object_set_new(corridor, CP_SCOPE_TEXT[scope], cp_corridor_json(e->pulses, e->chosen));
-    }
-    cp_sample_destroy(&sample);
-    cp_replication_set_destroy(&set);
-    return status;
-}
-
-static cp_status add_extras(const slice_extras *e, const cp_comparison *comparison, json_t *object,
-                            cp_error *error)
-{
-    json_t *variants = json_object_get(object, "variants");
-    for (size_t k = 0; k < comparison->variant_count; k++) {
-        json_t *ecdf = json_object(), *corridor = json_object();
-        json_t *variant = json_array_get(variants, k);
-        json_object_set_new(variant, "ecdf", ecdf);
-        json_object_set_new(variant, "corridor", corridor);
-        for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
-            cp_status status = add_curves(e, comparison->slice, comparison->variant[k].variant,
-                                          scope, ecdf, corridor, error);
-            if (status != CP_OK)
-                return status;
-        }
-    }
-    return CP_OK;
 }
 
 // Frontal vehicles by scenario, crash type, variant and validity, for the table of all of them.
@@ -251,11 +177,11 @@ static cp_status validity_counts(const cp_study_data *data, json_t **counts, cp_
     return CP_OK;
 }
 
-static cp_status add_slice(const slice_extras *extras, size_t baseline, cp_slice slice,
+static cp_status add_slice(const cp_slice_curves *curves, size_t baseline, cp_slice slice,
                            const cp_comparison_options *options, json_t *slices, char **answer,
                            cp_error *error)
 {
-    const cp_study_data *data = extras->data;
+    const cp_study_data *data = curves->data;
     cp_comparison comparison;
     json_t *object = NULL;
     *answer = NULL;
@@ -268,24 +194,24 @@ static cp_status add_slice(const slice_extras *extras, size_t baseline, cp_slice
         if (!object || json_array_append_new(slices, object) != 0)
             status = cp_fail_memory(error, "a comparison");
         else
-            status = add_extras(extras, &comparison, object, error);
+            status = cp_slice_curves_add(curves, &comparison, object, error);
     }
     cp_comparison_destroy(&comparison);
     return status;
 }
 
 // A comparison for every choice of the two filters, everything first.
-static cp_status add_slices(const slice_extras *extras, size_t baseline,
+static cp_status add_slices(const cp_slice_curves *curves, size_t baseline,
                             const cp_comparison_options *options, json_t *slices, char **answer_all,
                             cp_error *error)
 {
-    const cp_study_data *data = extras->data;
+    const cp_study_data *data = curves->data;
     size_t types = frontal_types(data);
     for (size_t s = 0; s <= data->scenario_count; s++) {
         for (size_t t = 0; t <= types; t++) {
             cp_slice slice = {s ? s - 1 : CP_SLICE_ALL, t ? t - 1 : CP_SLICE_ALL, NULL};
             char *answer;
-            cp_status status = add_slice(extras, baseline, slice, options, slices, &answer, error);
+            cp_status status = add_slice(curves, baseline, slice, options, slices, &answer, error);
             if (s == 0 && t == 0)
                 *answer_all = answer;
             else
@@ -295,6 +221,20 @@ static cp_status add_slices(const slice_extras *extras, size_t baseline,
         }
     }
     return CP_OK;
+}
+
+// {"x": km/h, "probability"} of a function of a speed, to draw; null of another.
+static json_t *risk_curve_json(const cp_study_risk *risk)
+{
+    if (!cp_predictor_is_speed(risk->predictor))
+        return json_null();
+    json_t *x = json_array(), *probability = json_array();
+    for (double km_h = 0.0; km_h <= RISK_CURVE_END_KM_H; km_h += RISK_CURVE_STEP_KM_H) {
+        json_array_append_new(x, json_real(km_h));
+        json_array_append_new(probability, cp_drawn_json(cp_risk_probability(
+                                               &risk->function, cp_m_s_from_km_h(km_h))));
+    }
+    return json_pack("{s:o, s:o}", "x", x, "probability", probability);
 }
 
 static json_t *risks_json(const cp_study_data *data)
@@ -308,11 +248,12 @@ static json_t *risks_json(const cp_study_data *data)
     for (size_t k = 0; k < data->risk_count; k++) {
         const cp_study_risk *r = &data->risk[k];
         json_array_append_new(
-            array, json_pack("{s:s, s:s, s:s, s:s, s:[f, f], s:f, s:s, s:s}", "name", r->name,
-                             "level", r->level, "predictor", COLUMN[r->predictor], "form",
-                             cp_risk_form_text(r->function.form), "coefficients",
-                             r->function.coefficient[0], r->function.coefficient[1], "unit_per_si",
-                             r->function.unit_per_si, "source", r->source, "note", r->note));
+            array, json_pack("{s:o, s:s, s:s, s:s, s:s, s:[f, f], s:f, s:s, s:s}", "curve",
+                             risk_curve_json(r), "name", r->name, "level", r->level, "predictor",
+                             COLUMN[r->predictor], "form", cp_risk_form_text(r->function.form),
+                             "coefficients", r->function.coefficient[0], r->function.coefficient[1],
+                             "unit_per_si", r->function.unit_per_si, "source", r->source, "note",
+                             r->note));
     }
     return array;
 }
@@ -376,15 +317,15 @@ static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t b
                             cp_error *error)
 {
     p->slices = json_array();
-    p->chosen = calloc(data->vehicle_count + 1, sizeof *p->chosen);
+    p->chosen = calloc(data->vehicle_count + data->treated_count + 1, sizeof *p->chosen);
     p->drawn = calloc(data->crash_count + 1, sizeof *p->drawn);
     if (!p->slices || !p->chosen || !p->drawn)
         return cp_fail_memory(error, "the data of a report");
     p->chance = choose_drawn(data, p->drawn, &p->frontal);
     cp_status status = cp_corridor_read(store, data, &p->pulses, error);
-    slice_extras extras = {data, &p->pulses, p->chosen};
+    cp_slice_curves curves = {data, options, &p->pulses, p->chosen};
     if (status == CP_OK)
-        status = add_slices(&extras, baseline, options, p->slices, answer_all, error);
+        status = add_slices(&curves, baseline, options, p->slices, answer_all, error);
     if (status == CP_OK)
         status = validity_counts(data, &p->counts, error);
     if (status == CP_OK)

@@ -3,8 +3,7 @@
 
 #include "core/file.h"
 #include "core/scratch.h"
-#include "core/units.h"
-#include "report/gallery.h"
+#include "report/plot_data.h"
 #include "report/slice_sample.h"
 
 #include <math.h>
@@ -13,24 +12,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* What every figure is drawn from. Its data are blocks of rows, tabs between the columns, two empty
- * lines between the blocks; gnuplot reads them as data, never as a part of its script. */
-typedef struct plot {
-    cp_store *store;
-    const cp_study_data *data;
-    const cp_comparison *comparison;
-    int scope;
-    FILE *out;
-    size_t drawn;       /* values written: 0 means nothing to show */
-    size_t block_count; /* blocks begun, or rows of a figure of intervals */
-    FILE *variants;     /* of each block or row, numbers with blanks between */
-    FILE *bars;         /* the rows that have an interval, likewise */
-} plot;
-
-static const char NOTHING[] = "0\tNaN\tNaN\tNaN\n"; // a block needs a row
+const char CP_PLOT_NOTHING[] = "0\tNaN\tNaN\tNaN\n";
 
 // A cell of text. gnuplot has no word for a quotation mark within one.
-static void put_text(FILE *out, const char *text)
+void cp_plot_text(FILE *out, const char *text)
 {
     fputc('"', out);
     for (; *text; text++) {
@@ -42,380 +27,87 @@ static void put_text(FILE *out, const char *text)
     fputc('"', out);
 }
 
-static const char *name_of(const plot *p, size_t variant)
+const char *cp_plot_name(const cp_plot *p, size_t variant)
 {
     return p->data->variant[variant].name;
 }
 
-// The next block; the colour, the point and, by the head of its second column, the title of what is
-// drawn from it are the variant's.
-static void begin_block(plot *p, size_t variant, const char *title)
+void cp_plot_begin_block(cp_plot *p, size_t variant, const char *title)
 {
     fputs(p->block_count > 0 ? "\n\n\"\"\t" : "\"\"\t", p->out);
-    put_text(p->out, title);
+    cp_plot_text(p->out, title);
     fputs("\t\"\"\t\"\"\n", p->out);
     fprintf(p->variants, "%zu ", variant);
     p->block_count++;
 }
 
-// ---- rows with an interval: rates, differences, benefits
-// -----------------------------------------
-
-/* One row of a figure of intervals. */
-typedef struct row {
-    size_t variant;
-    const char *label;
-    double value;
-    cp_interval interval;
-} row;
-
-static bool closed(const row *r)
+void cp_plot_begin_panel(cp_plot *p)
 {
-    return r->interval.status == CP_INTERVAL_VALUE && isfinite(r->interval.low) &&
-           isfinite(r->interval.high);
+    fprintf(p->panels, "%zu ", p->block_count);
+    p->panel_count++;
 }
 
-static void put_row(plot *p, const row *r)
-{
-    if (isnan(r->value))
-        return;
-    char label[512];
-    snprintf(label, sizeof label, "%.200s%s%.200s", name_of(p, r->variant), *r->label ? ": " : "",
-             r->label);
-    put_text(p->out, label);
-    fprintf(p->out, "\t%.9g\t%zu", r->value, p->drawn);
-    // No bar where there is no interval: none of no width is drawn.
-    if (closed(r)) {
-        fprintf(p->out, "\t%.9g\t%.9g\n", r->interval.low, r->interval.high);
-        fprintf(p->bars, "%zu ", p->drawn);
-    } else {
-        fputs("\tNaN\tNaN\n", p->out);
-    }
-    fprintf(p->variants, "%zu ", r->variant);
-    p->block_count++;
-    p->drawn++;
-}
-
-static void write_rows(plot *p, const row *rows, size_t count)
-{
-    for (size_t k = 0; k < count; k++)
-        put_row(p, &rows[k]);
-}
-
-static cp_status plot_rates(plot *p, cp_error *error)
+size_t cp_plot_variants(const cp_plot *p, size_t *variant)
 {
     const cp_comparison *c = p->comparison;
-    row *rows = calloc(c->variant_count + 1, sizeof *rows);
-    if (!rows)
-        return cp_fail_memory(error, "a figure");
-    for (size_t k = 0; k < c->variant_count; k++) {
-        const cp_variant_figures *v = &c->variant[k];
-        bool bootstrap = v->rate_bootstrap.status == CP_INTERVAL_VALUE;
-        rows[k] =
-            (row){v->variant, bootstrap ? "" : "Poisson, widened", v->rate, cp_rate_interval(v)};
-    }
-    write_rows(p, rows, c->variant_count);
-    free(rows);
-    return CP_OK;
-}
-
-// A difference that censoring leaves open has no place on an axis.
-static double known(cp_estimate estimate)
-{
-    return estimate.relation == CP_EXACTLY ? estimate.value : NAN;
-}
-
-static cp_status plot_difference(plot *p, cp_error *error)
-{
-    const cp_comparison *c = p->comparison;
-    row *rows = calloc(3 * c->contrast_count + 2 * c->counterfactual_count + 1, sizeof *rows);
-    if (!rows)
-        return cp_fail_memory(error, "a figure");
     size_t count = 0;
-    for (size_t k = 0; k < c->contrast_count; k++) {
-        const cp_contrast *o = &c->contrast[k].severity[CP_QUANTITY_OLC];
-        size_t v = c->contrast[k].variant;
-        rows[count++] = (row){v, "median", known(o->median_difference), o->median_interval};
-        rows[count++] = (row){v, "mean", known(o->mean_difference), o->mean_interval};
-        rows[count++] = (row){v, "90 % quantile", known(o->p90_difference), o->p90_interval};
-    }
-    for (size_t k = 0; k < c->counterfactual_count; k++) {
-        const cp_counterfactual_figures *f = &c->counterfactual[k];
-        rows[count++] = (row){f->variant, "all pairs", f->olc_g[CP_PAIRED_ALL].hodges_lehmann,
-                              f->olc_g[CP_PAIRED_ALL].hodges_lehmann_interval};
-        rows[count++] = (row){f->variant, "crashing", f->olc_g[CP_PAIRED_CRASHING].hodges_lehmann,
-                              f->olc_g[CP_PAIRED_CRASHING].hodges_lehmann_interval};
-    }
-    write_rows(p, rows, count);
-    free(rows);
-    return CP_OK;
+    for (size_t k = 0; k < c->variant_count; k++)
+        variant[count++] = c->variant[k].variant;
+    for (size_t k = 0; k < c->counterfactual_count; k++)
+        variant[count++] = c->counterfactual[k].variant;
+    return count;
 }
 
-static cp_status plot_benefit(plot *p, cp_error *error)
+bool cp_plot_has_vehicle(const cp_plot *p, const cp_study_vehicle *vehicle, size_t chosen)
 {
-    const cp_comparison *c = p->comparison;
-    size_t risks = p->data->risk_count, count = 0;
-    size_t most = risks * (c->contrast_count + c->counterfactual_count);
-    row *rows = calloc(most + 1, sizeof *rows);
-    char(*label)[128] = calloc(most + 1, sizeof *label);
-    if (!rows || !label) {
-        free(rows);
-        free(label);
-        return cp_fail_memory(error, "a figure");
-    }
-    for (size_t k = 0; k < c->contrast_count + c->counterfactual_count; k++) {
-        bool pairs = k >= c->contrast_count;
-        const cp_counterfactual_figures *f = &c->counterfactual[pairs ? k - c->contrast_count : 0];
-        for (size_t r = 0; r < risks; r++, count++) {
-            const cp_benefit_figures *b = pairs ? &f->benefit[r] : &c->contrast[k].benefit[r];
-            const cp_study_risk *risk = &p->data->risk[r];
-            snprintf(label[count], sizeof label[count], "%.50s (%.50s)", risk->level, risk->name);
-            rows[count] =
-                (row){pairs ? f->variant : c->contrast[k].variant,
-                      label[count],
-                      100.0 * b->benefit_1,
-                      {b->interval.status, 100.0 * b->interval.low, 100.0 * b->interval.high}};
-        }
-    }
-    write_rows(p, rows, count);
-    free(rows);
-    free(label);
-    return CP_OK;
-}
-
-// ---- curves ------------------------------------------------------------------------------------
-
-// A point of a distribution function and its band, if there is one.
-static void put_share(plot *p, double x, double share, double half_width)
-{
-    if (isnan(half_width))
-        fprintf(p->out, "%.6g\t%.6g\tNaN\tNaN\n", x, share);
-    else
-        fprintf(p->out, "%.6g\t%.6g\t%.6g\t%.6g\n", x, share, fmax(0.0, share - half_width),
-                fmin(1.0, share + half_width));
-}
-
-static void put_steps(plot *p, const cp_sample *sample, double half_width)
-{
-    double n = (double)sample->count, before = 0.0;
-    size_t censored = cp_sample_censored(sample);
-    // The share before each step and after it, so that lines and areas are stairs.
-    before = (double)censored / n;
-    put_share(p, 0.0, before, half_width);
-    for (size_t k = censored; k < sample->count; k++) {
-        double after = (double)(k + 1) / n, x = sample->value[k];
-        put_share(p, x, before, half_width);
-        put_share(p, x, after, half_width);
-        before = after;
-    }
-    p->drawn += sample->count;
-}
-
-static cp_status plot_olc(plot *p, cp_error *error)
-{
-    const cp_comparison *c = p->comparison;
-    for (size_t k = 0; k < c->variant_count; k++) {
-        cp_replication_set set;
-        cp_sample sample = {0};
-        cp_status status =
-            cp_replication_set_create(p->data, c->slice, c->variant[k].variant, &set, error);
-        if (status == CP_OK)
-            status =
-                cp_slice_sample(p->data, &set, c->slice, p->scope, CP_QUANTITY_OLC, &sample, error);
-        if (status == CP_OK) {
-            char title[512];
-            snprintf(title, sizeof title, "%.400s (n = %zu)", name_of(p, c->variant[k].variant),
-                     c->variant[k].description[CP_QUANTITY_OLC][p->scope].count);
-            begin_block(p, c->variant[k].variant, title);
-            if (sample.count > 0)
-                put_steps(p, &sample, c->variant[k].olc_band[p->scope].half_width_1);
-            else
-                fputs(NOTHING, p->out);
-        }
-        cp_sample_destroy(&sample);
-        cp_replication_set_destroy(&set);
-        if (status != CP_OK)
-            return status;
-    }
-    return CP_OK;
-}
-
-// Crashes above a severity per vehicle-km over that severity, with the band of single points.
-static cp_status plot_exceedance(plot *p, int what, cp_error *error)
-{
-    (void)error;
-    const cp_comparison *c = p->comparison;
-    double factor = what == CP_EXCEEDED_DELTA_V ? 3.6 : 1.0;
-    for (size_t k = 0; k < c->variant_count; k++) {
-        char title[512];
-        snprintf(title, sizeof title, "%.400s, 95 %% at each point",
-                 name_of(p, c->variant[k].variant));
-        begin_block(p, c->variant[k].variant, title);
-        for (size_t j = 0; j < CP_EXCEEDANCE_POINTS; j++) {
-            const cp_exceedance *e = &c->variant[k].curve[what][j];
-            if (isnan(e->rate)) {
-                fputs(NOTHING, p->out);
-                break;
-            }
-            fprintf(p->out, "%.6g\t%.6g\t%.6g\t%.6g\n", factor * e->x, e->rate, e->interval.low,
-                    e->interval.high);
-            p->drawn += e->crashes;
-        }
-    }
-    return CP_OK;
-}
-
-static bool in_slice(const plot *p, size_t vehicle)
-{
-    const cp_study_vehicle *v = &p->data->vehicle[vehicle];
     cp_slice slice = p->comparison->slice;
-    return v->frontal && (p->scope == CP_SCOPE_ALL || v->validity == 0) &&
-           (!slice.chosen || slice.chosen[vehicle]) &&
-           cp_slice_has_crash(p->data, slice, &p->data->crash[v->crash]);
-}
-
-static size_t variant_of(const plot *p, size_t vehicle)
-{
-    const cp_study_crash *crash = &p->data->crash[p->data->vehicle[vehicle].crash];
-    return p->data->replication[crash->replication].variant;
-}
-
-static cp_status plot_corridor(plot *p, cp_error *error)
-{
-    cp_corridor_pulses pulses;
-    unsigned char *chosen = calloc(p->data->vehicle_count + 1, sizeof *chosen);
-    if (!chosen)
-        return cp_fail_memory(error, "a figure");
-    cp_status status = cp_corridor_read(p->store, p->data, &pulses, error);
-    if (status != CP_OK) {
-        free(chosen);
-        return status;
-    }
-    const cp_comparison *c = p->comparison;
-    for (size_t k = 0; k < c->variant_count; k++) {
-        for (size_t j = 0; j < p->data->vehicle_count; j++)
-            chosen[j] = in_slice(p, j) && variant_of(p, j) == c->variant[k].variant;
-        json_t *corridor = cp_corridor_json(&pulses, chosen);
-        const json_t *p10 = json_object_get(corridor, "p10"),
-                     *p50 = json_object_get(corridor, "p50"),
-                     *p90 = json_object_get(corridor, "p90");
-        char title[512];
-        snprintf(title, sizeof title, "%.400s, median, 10–90 %%",
-                 name_of(p, c->variant[k].variant));
-        begin_block(p, c->variant[k].variant, title);
-        for (size_t t = 0; t < json_array_size(p50); t++, p->drawn++)
-            fprintf(p->out, "%g\t%g\t%g\t%g\n", 1e3 * CP_CORRIDOR_INTERVAL_S * (double)t,
-                    json_number_value(json_array_get(p50, t)),
-                    json_number_value(json_array_get(p10, t)),
-                    json_number_value(json_array_get(p90, t)));
-        if (json_array_size(p50) == 0)
-            fputs(NOTHING, p->out);
-        json_decref(corridor);
-    }
-    cp_corridor_destroy(&pulses);
-    free(chosen);
-    return CP_OK;
-}
-
-// ---- points ------------------------------------------------------------------------------------
-
-// Columns of a vehicle: x, y, colour (km/h). False: not drawn.
-static bool coordinates(const plot *p, cp_plot_kind kind, size_t vehicle, double xyz[3])
-{
-    const cp_study_vehicle *v = &p->data->vehicle[vehicle];
-    const cp_study_crash *crash = &p->data->crash[v->crash];
-    xyz[2] = cp_km_h_from_m_s(v->closing_speed_m_s);
-    if (kind == CP_PLOT_SEVERITY) {
-        xyz[0] = xyz[2];
-        xyz[1] = v->olc_g;
-        return v->olc == CP_OLC_KNOWN;
-    }
-    xyz[0] = kind == CP_PLOT_MAP ? v->lateral_offset_m : crash->x_m;
-    xyz[1] = kind == CP_PLOT_MAP ? cp_deg_from_rad(v->angle_rad) : crash->y_m;
-    return v->role == 'a';
-}
-
-static cp_status plot_points(plot *p, cp_plot_kind kind, cp_error *error)
-{
-    (void)error;
-    const cp_comparison *c = p->comparison;
-    for (size_t k = 0; k < c->variant_count; k++) {
-        begin_block(p, c->variant[k].variant, name_of(p, c->variant[k].variant));
-        fputs(NOTHING, p->out);
-        for (size_t j = 0; j < p->data->vehicle_count; j++) {
-            double xyz[3];
-            if (variant_of(p, j) != c->variant[k].variant || !in_slice(p, j) ||
-                !coordinates(p, kind, j, xyz))
-                continue;
-            fprintf(p->out, "%.6g\t%.6g\t%.6g\n", xyz[0], xyz[1], xyz[2]);
-            p->drawn++;
-        }
-    }
-    return CP_OK;
-}
-
-// ---- counterfactual outcomes
-// ---------------------------------------------------------------------
-
-static cp_status plot_outcomes(plot *p, cp_error *error)
-{
-    static const cp_outcome ORDER[] = {CP_OUTCOME_AVOIDED,          CP_OUTCOME_MITIGATED,
-                                       CP_OUTCOME_UNCHANGED,        CP_OUTCOME_AGGRAVATED,
-                                       CP_OUTCOME_CHANGED_OPPONENT, CP_OUTCOME_INVALID};
-    const cp_comparison *c = p->comparison;
-    if (c->counterfactual_count == 0)
-        return cp_fail(error, CP_BAD_INPUT,
-                       "outcomes are of studies with the design counterfactual only");
-    fputs("\"\"", p->out);
-    for (size_t o = 0; o < 6; o++) {
-        fputs("\t\"", p->out);
-        for (const char *t = cp_outcome_text(ORDER[o]); *t; t++)
-            fputc(*t == '_' ? ' ' : *t, p->out);
-        fputc('"', p->out);
-    }
-    fputc('\n', p->out);
-    for (size_t k = 0; k < c->counterfactual_count; k++) {
-        put_text(p->out, name_of(p, c->counterfactual[k].variant));
-        for (size_t o = 0; o < 6; o++)
-            fprintf(p->out, "\t%zu", c->counterfactual[k].outcome[ORDER[o]]);
-        fputc('\n', p->out);
-        p->drawn += c->counterfactual[k].crashes;
-    }
-    return CP_OK;
+    return vehicle->frontal && (p->scope == CP_SCOPE_ALL || vehicle->validity == 0) &&
+           (!slice.chosen || chosen == SIZE_MAX || slice.chosen[chosen]) &&
+           cp_slice_has_crash(p->data, slice, &p->data->crash[vehicle->crash]);
 }
 
 // ---- data, script and gnuplot ------------------------------------------------------------------
 
-static cp_status write_data(plot *p, cp_plot_kind kind, cp_error *error)
+static cp_status write_data(cp_plot *p, cp_plot_kind kind, cp_error *error)
 {
     switch (kind) {
     case CP_PLOT_RATES:
-        return plot_rates(p, error);
+        return cp_plot_rates(p, error);
     case CP_PLOT_OLC:
-        return plot_olc(p, error);
+        return cp_plot_distribution(p, CP_EXCEEDED_OLC, error);
+    case CP_PLOT_DELTA_V:
+        return cp_plot_distribution(p, CP_EXCEEDED_DELTA_V, error);
     case CP_PLOT_DIFFERENCE:
-        return plot_difference(p, error);
+        return cp_plot_difference(p, error);
+    case CP_PLOT_FOREST:
+        return cp_plot_forest(p, error);
     case CP_PLOT_SEVERITY:
     case CP_PLOT_MAP:
     case CP_PLOT_SITES:
-        return plot_points(p, kind, error);
+        return cp_plot_points(p, kind, error);
     case CP_PLOT_OUTCOMES:
-        return plot_outcomes(p, error);
+        return cp_plot_outcomes(p, error);
     case CP_PLOT_BENEFIT:
-        return plot_benefit(p, error);
+        return cp_plot_benefit(p, error);
+    case CP_PLOT_RISK:
+        return cp_plot_risk(p, error);
     case CP_PLOT_CORRIDOR:
-        return plot_corridor(p, error);
+        return cp_plot_corridor(p, error);
     case CP_PLOT_ABOVE_OLC:
-        return plot_exceedance(p, CP_EXCEEDED_OLC, error);
+        return cp_plot_exceedance(p, CP_EXCEEDED_OLC, error);
     case CP_PLOT_ABOVE_DELTA_V:
-        return plot_exceedance(p, CP_EXCEEDED_DELTA_V, error);
+        return cp_plot_exceedance(p, CP_EXCEEDED_DELTA_V, error);
+    case CP_PLOT_CONVERGENCE:
+        return cp_plot_convergence(p, error);
+    case CP_PLOT_DOSE:
+        return cp_plot_dose(p, error);
     case CP_PLOT_KIND_COUNT:
         break;
     }
     return cp_fail(error, CP_BAD_INPUT, "there is no such kind of plot");
 }
 
-static cp_status write_streams(plot *p, cp_plot_kind kind, cp_error *error)
+static cp_status write_streams(cp_plot *p, cp_plot_kind kind, cp_error *error)
 {
     cp_status status = write_data(p, kind, error);
     if (status == CP_OK && (ferror(p->out) || ferror(p->variants) || ferror(p->bars)))
@@ -425,26 +117,38 @@ static cp_status write_streams(plot *p, cp_plot_kind kind, cp_error *error)
     return status;
 }
 
+/* Lists of numbers that the script begins with. */
+enum { LIST_VARIANTS, LIST_BARS, LIST_PANELS, LIST_BOXES, LISTS };
+
 // Data of a figure as text, and the numbers that its script begins with.
-static cp_status make(plot *p, cp_plot_kind kind, char **data, char **numbers, cp_error *error)
+static cp_status make(cp_plot *p, cp_plot_kind kind, char **data, char **numbers, cp_error *error)
 {
-    size_t data_size = 0, variants_size = 0, bars_size = 0;
-    char *variants = NULL, *bars = NULL;
+    char *list[LISTS] = {NULL};
+    size_t data_size = 0, size[LISTS] = {0}, all = 128;
+    FILE **const stream[LISTS] = {&p->variants, &p->bars, &p->panels, &p->boxes};
     p->out = open_memstream(data, &data_size);
-    p->variants = open_memstream(&variants, &variants_size);
-    p->bars = open_memstream(&bars, &bars_size);
-    cp_status status = p->out && p->variants && p->bars ? write_streams(p, kind, error)
-                                                        : cp_fail_memory(error, "a figure");
+    for (int k = 0; k < LISTS; k++)
+        *stream[k] = open_memstream(&list[k], &size[k]);
+    cp_status status = p->out && p->variants && p->bars && p->panels && p->boxes
+                           ? write_streams(p, kind, error)
+                           : cp_fail_memory(error, "a figure");
     int bad = p->out && fclose(p->out) != 0;
-    bad |= p->variants && fclose(p->variants) != 0;
-    bad |= p->bars && fclose(p->bars) != 0;
-    if (status == CP_OK && (bad || (*numbers = malloc(variants_size + bars_size + 64)) == NULL))
+    for (int k = 0; k < LISTS; k++) {
+        bad |= *stream[k] && fclose(*stream[k]) != 0;
+        all += size[k];
+    }
+    if (status == CP_OK && (bad || (*numbers = malloc(all)) == NULL))
         status = cp_fail_memory(error, "a figure");
     if (status == CP_OK)
-        sprintf(*numbers, "n = %zu\nvariants = \"%s\"\nbars = \"%s\"\n", p->block_count,
-                variants != NULL ? variants : "", bars != NULL ? bars : "");
-    free(variants);
-    free(bars);
+        sprintf(
+            *numbers,
+            "n = %zu\npairs = %d\nalone = %d\nvariants = \"%s\"\nbars = \"%s\"\npanels = \"%s\"\n"
+            "boxes = \"%s\"\n",
+            p->block_count, p->data->counterfactual,
+            p->comparison->contrast_count + p->comparison->counterfactual_count == 0,
+            list[LIST_VARIANTS], list[LIST_BARS], list[LIST_PANELS], list[LIST_BOXES]);
+    for (int k = 0; k < LISTS; k++)
+        free(list[k]);
     if (status != CP_OK) {
         free(*data);
         *data = NULL;
@@ -452,10 +156,22 @@ static cp_status make(plot *p, cp_plot_kind kind, char **data, char **numbers, c
     return status;
 }
 
+static cp_plot plot_of(cp_store *store, const cp_study_data *study, const cp_comparison *comparison,
+                       int scope)
+{
+    cp_plot p = {.store = store,
+                 .data = study,
+                 .comparison = comparison,
+                 .options = cp_comparison_options_default(),
+                 .scope = scope};
+    p.options.permutations = 0; // no figure shows a p-value
+    return p;
+}
+
 cp_status cp_plot_data(cp_store *store, const cp_study_data *study, const cp_comparison *comparison,
                        int scope, cp_plot_kind kind, char **data, cp_error *error)
 {
-    plot p = {.store = store, .data = study, .comparison = comparison, .scope = scope};
+    cp_plot p = plot_of(store, study, comparison, scope);
     char *numbers = NULL;
     *data = NULL;
     cp_status status = make(&p, kind, data, &numbers, error);
@@ -474,7 +190,13 @@ static const char BEGIN_SCRIPT[] = "set encoding utf8\n"
                                    "number(k) = int(word(variants, k + 1)) % 6 + 1\n"
                                    "colour(k) = word(colours, number(k))\n"
                                    "point(k) = int(word(points, number(k)))\n"
-                                   "bar(j) = words(bars) < j ? 0 : int(word(bars, j))\n";
+                                   "bar(j) = words(bars) < j ? 0 : int(word(bars, j))\n"
+                                   "edge(q, k) = real(word(boxes, 4 * (q - 1) + k))\n"
+                                   "panel(q) = q > words(panels) ? n : int(word(panels, q))\n"
+                                   "ratio(x) = x < 0.01 ? 0.01 : x > 100 ? 100 : x\n"
+                                   "headline = alone ? \"frontal crashes per 10^6 vehicle-km\" : "
+                                   "pairs ? \"share of crashes avoided, %\" : \"frontal "
+                                   "crash rate over that of the baseline\"\n";
 
 #define GRID "set grid lc rgb \"#d9dde2\"\n"
 #define ROWS                                                                                       \
@@ -491,6 +213,24 @@ static const char BEGIN_SCRIPT[] = "set encoding utf8\n"
          "solid 0.15 noborder lc rgb colour(k) notitle, "                                          \
          "for [k=0:n-1] \"data\" index k using 1:2 with lines lw 2 lc rgb colour(k) "              \
          "title columnhead(2)\n"
+// Of a ratio on a logarithmic axis; what lies beyond its ends stands there.
+#define FOREST                                                                                     \
+    "set xlabel headline\nset yrange [n - 0.5:-0.5]\nset grid xtics lc rgb \"#d9dde2\"\nunset "    \
+    "key\n"                                                                                        \
+    "if (!pairs) { set logscale x; set arrow from 1, graph 0 to 1, graph 1 nohead lc rgb "         \
+    "\"#1c2430\" } else { set xrange [0:100] }\n"                                                  \
+    "f(x) = pairs ? x : ratio(x)\n"                                                                \
+    "plot for [k=0:n-1] \"data\" every ::k::k using (f($2)):3:ytic(1) with points "                \
+    "pt point(k) ps 1 lc rgb colour(k), "                                                          \
+    "for [j=1:words(bars)] \"data\" every ::bar(j)::bar(j) using (f($2)):3:(f($4)):(f($5)) with "  \
+    "xerrorbars lw 2 pt point(bar(j)) ps 1 lc rgb colour(bar(j))\n"
+// One figure above the other.
+#define PANELS(content)                                                                            \
+    GRID "set key autotitle columnhead\nset multiplot layout words(panels), 1\n"                   \
+         "do for [q=1:words(panels)] {\n" content "}\nunset multiplot\n"
+#define SHARE                                                                                      \
+    "set ylabel (pairs ? \"share of crashes, avoided ones below every value\" : \"share of "       \
+    "vehicles\")\nset yrange [0:1]\nset xrange [0:*]\nset key bottom right\n"
 #define ABOVE                                                                                      \
     "set ylabel \"frontal crashes above it per 10^6 vehicle-km\"\n"                                \
     "set xrange [0:*]\nset yrange [0:*]\nset key top right\n"
@@ -504,8 +244,7 @@ static const char *const SCRIPT[CP_PLOT_KIND_COUNT] = {
     [CP_PLOT_RATES] = "set xlabel \"frontal crashes per 10^6 vehicle-km\"\n" ROWS,
     [CP_PLOT_DIFFERENCE] = "set xlabel \"change of OLC against the baseline, g\"\n" ZERO ROWS,
     [CP_PLOT_BENEFIT] = "set xlabel \"fewer expected injured drivers, %\"\n" ZERO ROWS,
-    [CP_PLOT_OLC] = "set xlabel \"OLC, g\"\nset ylabel \"share of vehicles\"\nset yrange [0:1]\n"
-                    "set xrange [0:*]\nset key bottom right\n" CURVES,
+    [CP_PLOT_OLC] = "set xlabel \"OLC, g\"\n" SHARE CURVES,
     [CP_PLOT_CORRIDOR] = "set xlabel \"time from first contact, ms\"\n"
                          "set ylabel \"deceleration, g (CFC60)\"\nset key top right\n" CURVES,
     [CP_PLOT_ABOVE_OLC] = "set xlabel \"OLC, g\"\n" ABOVE CURVES,
@@ -517,8 +256,27 @@ static const char *const SCRIPT[CP_PLOT_KIND_COUNT] = {
                     "set cblabel \"closing speed, km/h\"\n"
                     "set palette defined (0 \"#fde725\", 0.33 \"#35b779\", 0.66 \"#31688e\", "
                     "1 \"#440154\")\nset key outside top\n" POINTS("1:2:3", "palette"),
-    [CP_PLOT_SITES] = "set xlabel \"x, m\"\nset ylabel \"y, m\"\nset size ratio -1\n"
-                      "set key outside top\n" POINTS("1:2", "rgb colour(k)"),
+    [CP_PLOT_SITES] =
+        "set xlabel \"x, m\"\nset ylabel \"y, m\"\nset size ratio -1\n"
+        "set key outside right\n" PANELS(
+            "set xrange [edge(q, 1):edge(q, 2)]\nset yrange [edge(q, 3):edge(q, 4)]\n"
+            "plot for [k=panel(q):panel(q + 1)-1] \"data\" index k using 1:2 with points "
+            "pt point(k) ps 0.6 lc rgb colour(k) title columnhead(2)\n"),
+    [CP_PLOT_DOSE] =
+        "set xlabel \"value of the parameter\"\nset ylabel headline\nset key tmargin center\n"
+        "set offsets graph 0.05, graph 0.05, 0, 0\nset yrange [0:*]\n"
+        // Lines side by side, so that their intervals do not hide each other.
+        "beside(q, k) = 0.012 * (edge(q, 2) - edge(q, 1)) * (k - panel(q))\n" PANELS(
+            "plot for [k=panel(q):panel(q + 1)-1] \"data\" index k using ($1 + beside(q, "
+            "k)):2:3:4 with yerrorbars lw 1.5 pt point(k) ps 1 lc rgb colour(k) notitle, "
+            "for [k=panel(q):panel(q + 1)-1] \"data\" index k using ($1 + beside(q, k)):2 with "
+            "linespoints lw 1.5 pt point(k) ps 1 lc rgb colour(k) title columnhead(2)\n"),
+    [CP_PLOT_FOREST] = FOREST,
+    [CP_PLOT_RISK] = "set xlabel \"delta-v, km/h\"\nset ylabel \"probability of the injury\"\n"
+                     "set yrange [0:1]\nset key top left\n" CURVES,
+    [CP_PLOT_CONVERGENCE] = "set xlabel \"replications\"\nset ylabel headline\nset xrange [0:*]\n"
+                            "set yrange [0:*]\nset key top right\n" CURVES,
+    [CP_PLOT_DELTA_V] = "set xlabel \"delta-v, km/h\"\n" SHARE CURVES,
     [CP_PLOT_OUTCOMES] =
         "set style data histograms\nset style histogram rowstacked\n"
         "set style fill solid 0.8 noborder\nset boxwidth 0.6\n"
@@ -526,6 +284,8 @@ static const char *const SCRIPT[CP_PLOT_KIND_COUNT] = {
         "plot for [o=2:7] \"data\" using o:xtic(1) lc rgb word(fills, o - 1) "
         "title columnhead(o)\n",
 };
+
+#define TERMINAL_SIZE 128
 
 // Let gnuplot work in a folder of its own, where all files have names of ours.
 static cp_status run_gnuplot(const char *terminal, const char *numbers, const char *script,
@@ -569,23 +329,40 @@ static cp_status draw(const char *terminal, const char *numbers, const char *scr
     return status;
 }
 
+/* Height of a panel besides the first, of one figure's. */
+#define PANEL_SHARE_1 0.7
+
+// The terminal of an ending, as high as its panels need; false for another ending.
+static bool terminal_of(const char *path, size_t panels, char terminal[TERMINAL_SIZE])
+{
+    const char *ending = strrchr(path, '.');
+    double height = panels > 1 ? 1.0 + PANEL_SHARE_1 * (double)(panels - 1) : 1.0;
+    if (ending && strcmp(ending, ".svg") == 0)
+        snprintf(terminal, TERMINAL_SIZE,
+                 "svg size 720,%.0f font \"Helvetica,13\" noenhanced background \"#ffffff\"",
+                 450.0 * height);
+    else if (ending && strcmp(ending, ".pdf") == 0)
+        snprintf(terminal, TERMINAL_SIZE,
+                 "pdfcairo size 16cm,%.1fcm font \"Helvetica,11\" noenhanced", 10.0 * height);
+    else
+        return false;
+    return true;
+}
+
 cp_status cp_plot_write(cp_store *store, const cp_study_data *study,
                         const cp_comparison *comparison, int scope, cp_plot_kind kind,
                         const char *path, cp_error *error)
 {
-    const char *ending = strrchr(path, '.');
-    const char *terminal = NULL;
-    if (ending && strcmp(ending, ".svg") == 0)
-        terminal = "svg size 720,450 font \"Helvetica,13\" noenhanced background \"#ffffff\"";
-    else if (ending && strcmp(ending, ".pdf") == 0)
-        terminal = "pdfcairo size 16cm,10cm font \"Helvetica,11\" noenhanced";
-    if (!terminal)
+    char terminal[TERMINAL_SIZE];
+    if (!terminal_of(path, 1, terminal))
         return cp_fail(error, CP_BAD_INPUT, "%s: the file must end in .svg or .pdf", path);
-    plot p = {.store = store, .data = study, .comparison = comparison, .scope = scope};
+    cp_plot p = plot_of(store, study, comparison, scope);
     char *data = NULL, *numbers = NULL;
     cp_status status = make(&p, kind, &data, &numbers, error);
-    if (status == CP_OK)
+    if (status == CP_OK) {
+        (void)terminal_of(path, p.panel_count, terminal);
         status = draw(terminal, numbers, SCRIPT[kind], data, path, error);
+    }
     free(numbers);
     free(data);
     return status;

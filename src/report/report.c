@@ -7,6 +7,7 @@
 #include "report/page_data.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 // Files of reports/ and the drawing library, embedded at build time.
 extern const unsigned char cp_page_html[];
@@ -17,17 +18,28 @@ extern const unsigned char cp_page_d3_notice[];
 extern const unsigned char cp_page_d3[];
 extern const unsigned char cp_scorecard_csv[]; /* db/validation/scorecard.csv */
 
+// What stands behind the empty line of an answer: its conditions. Ends the answer there.
+static const char *cut_conditions(char *answer)
+{
+    char *line = strstr(answer, "\n\n");
+    if (!line)
+        return "";
+    *line = '\0';
+    return line + 2;
+}
+
 static cp_status write_page(const cp_study_data *data, const json_t *page_data,
-                            const json_t *activations, const char *answer, const char *path,
+                            const json_t *activations, char *answer, const char *path,
                             cp_error *error)
 {
+    char *conditions = cp_page_escape(cut_conditions(answer));
     char *title = cp_page_escape(data->name), *safe_answer = cp_page_escape(answer);
     char *notice = cp_page_escape((const char *)cp_page_d3_notice),
          *json = cp_page_data_text(page_data), *acts = cp_page_data_text(activations);
     char *page = NULL;
     size_t size = 0;
     cp_status status;
-    if (!title || !safe_answer || !notice || !json || !acts) {
+    if (!title || !safe_answer || !conditions || !notice || !json || !acts) {
         status = cp_fail_memory(error, "a report");
         goto done;
     }
@@ -35,6 +47,7 @@ static cp_status write_page(const cp_study_data *data, const json_t *page_data,
         {"version", CRASHPULSE_VERSION},
         {"title", title},
         {"answer", safe_answer},
+        {"conditions", conditions},
         {"style", (const char *)cp_page_css},
         {"d3", (const char *)cp_page_d3},
         {"d3_notice", notice},
@@ -55,6 +68,7 @@ done:
     free(json);
     free(notice);
     free(safe_answer);
+    free(conditions);
     free(title);
     return status;
 }

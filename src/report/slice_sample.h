@@ -66,6 +66,10 @@ CP_MUST_CHECK cp_status cp_exceedance_contrast(const cp_study_data *data,
                                                const cp_comparison_options *options,
                                                cp_contrast_figures *figures, cp_error *error);
 
+/* The same curve of a sample of one value a crash; events: room for the set's replications. */
+void cp_exceedance_curve(const cp_sample *sample, const cp_replication_set *set, int what,
+                         double *events, cp_exceedance curve[CP_EXCEEDANCE_POINTS]);
+
 /* What a risk function says of the drivers of a slice. */
 typedef struct cp_injury_sum {
     size_t drivers; /* of frontal crashes, whose risk it is, with a known predictor */

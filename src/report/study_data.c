@@ -132,16 +132,10 @@ static cp_status read_crash(void *context, const cp_row *row, cp_error *error)
     return CP_OK;
 }
 
-static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
+// A vehicle from the first cells of a row, of a crash as it happened or a treated one.
+static cp_study_vehicle vehicle_of(const cp_row *row)
 {
-    reader *r = context;
-    cp_study_data *data = r->data;
-    cp_status status =
-        grow((void **)&data->vehicle, data->vehicle_count, &r->room, sizeof *data->vehicle, error);
-    if (status != CP_OK)
-        return status;
-    cp_study_vehicle *vehicle = &data->vehicle[data->vehicle_count++];
-    *vehicle = (cp_study_vehicle){
+    cp_study_vehicle vehicle = {
         .crash = (size_t)row->cell[0].integer,
         .role = row->cell[1].text[0],
         .olc = (cp_olc_known)row->cell[2].integer,
@@ -154,8 +148,37 @@ static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
         .frontal = row->cell[9].integer != 0,
     };
     for (int k = 0; k < CP_PREDICTOR_COUNT; k++)
-        vehicle->predictor[k] = row->cell[10 + k].real;
+        vehicle.predictor[k] = row->cell[10 + k].real;
+    return vehicle;
+}
+
+static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
+{
+    reader *r = context;
+    cp_study_data *data = r->data;
+    cp_status status =
+        grow((void **)&data->vehicle, data->vehicle_count, &r->room, sizeof *data->vehicle, error);
+    if (status != CP_OK)
+        return status;
+    cp_study_vehicle *vehicle = &data->vehicle[data->vehicle_count++];
+    *vehicle = vehicle_of(row);
     data->frontal_vehicle_count += vehicle->frontal;
+    return CP_OK;
+}
+
+static cp_status read_treated(void *context, const cp_row *row, cp_error *error)
+{
+    reader *r = context;
+    cp_study_data *data = r->data;
+    cp_status status =
+        grow((void **)&data->treated, data->treated_count, &r->room, sizeof *data->treated, error);
+    if (status != CP_OK)
+        return status;
+    cp_study_treated *treated = &data->treated[data->treated_count++];
+    treated->vehicle = vehicle_of(row);
+    treated->variant = (size_t)row->cell[10 + CP_PREDICTOR_COUNT].integer;
+    treated->x_m = row->cell[11 + CP_PREDICTOR_COUNT].real;
+    treated->y_m = row->cell[12 + CP_PREDICTOR_COUNT].real;
     return CP_OK;
 }
 
@@ -164,6 +187,11 @@ static const char *const PREDICTOR_COLUMN[] = {
     CP_PREDICTORS(CP_PREDICTOR_COLUMN)
 #undef CP_PREDICTOR_COLUMN
 };
+
+bool cp_predictor_is_speed(cp_predictor predictor)
+{
+    return strstr(PREDICTOR_COLUMN[predictor], "_m_s") != NULL;
+}
 
 static cp_status read_risk(void *context, const cp_row *row, cp_error *error)
 {
@@ -261,16 +289,27 @@ static cp_status read_pair(void *context, const cp_row *row, cp_error *error)
     return CP_OK;
 }
 
-static const char VEHICLES[] = CP_STUDY_PLACES
-    "SELECT c.place, w.role, CASE w.olc_status WHEN 'value' THEN 0 WHEN 'simulation_failed' THEN 2"
-    " ELSE 1 END, w.olc_g, w.delta_v_m_s, c.closing_speed_m_s, c.lateral_offset_m, c.angle_rad,"
-    " o.place, w.frontal,"
-    /* predictors */
-    " w.delta_v_m_s, w.delta_v_x_m_s, c.closing_speed_m_s, w.max_50ms_g, w.asi_1,"
-    " e.delta_v_without_rebound_m_s"
-    " FROM crash_vehicle AS w JOIN c ON c.id = w.crash_id JOIN delta_v_without_rebound AS e"
-    " ON e.crash_id = w.crash_id AND e.role = w.role JOIN o ON o.validity = w.validity"
-    " ORDER BY c.place, w.role";
+// What vehicle_of() reads behind the crash, of a vehicle w and its delta-v without rebound e;
+// crash: who knows both vehicles' speed.
+#define VEHICLE_CELLS(crash)                                                                       \
+    "w.role, CASE w.olc_status WHEN 'value' THEN 0 WHEN 'simulation_failed' THEN 2 ELSE 1 END,"    \
+    " w.olc_g, w.delta_v_m_s, " crash ".closing_speed_m_s, " crash ".lateral_offset_m, " crash     \
+    ".angle_rad, o.place, w.frontal, w.delta_v_m_s, w.delta_v_x_m_s, " crash                       \
+    ".closing_speed_m_s, w.max_50ms_g, w.asi_1, e.delta_v_without_rebound_m_s"
+
+static const char VEHICLES[] = CP_STUDY_PLACES "SELECT c.place, " VEHICLE_CELLS(
+    "c") " FROM crash_vehicle AS w JOIN c ON c.id = w.crash_id JOIN delta_v_without_rebound AS e"
+         " ON e.crash_id = w.crash_id AND e.role = w.role JOIN o ON o.validity = w.validity"
+         " ORDER BY c.place, w.role";
+
+static const char TREATED[] = CP_STUDY_PLACES "SELECT c.place, " VEHICLE_CELLS(
+    "p") ", v.place, p.x_m, p.y_m"
+         " FROM counterfactual_vehicle AS w JOIN counterfactual AS p"
+         " ON p.crash_id = w.crash_id AND p.variant_id = w.variant_id"
+         " JOIN counterfactual_delta_v_without_rebound AS e"
+         " ON e.crash_id = w.crash_id AND e.variant_id = w.variant_id AND e.role = w.role"
+         " JOIN c ON c.id = w.crash_id JOIN o ON o.validity = w.validity"
+         " JOIN v ON v.id = w.variant_id AND v.sweep = '' ORDER BY c.place, v.place, w.role";
 
 static const char PAIRS[] = CP_STUDY_PLACES
     "SELECT c.place, v.place, p.outcome, p.outcome_olc, coalesce(p.reason, 'reproduced'),"
@@ -312,6 +351,7 @@ static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error
          read_crash},
         {VEHICLES, read_vehicle},
         {PAIRS, read_pair},
+        {TREATED, read_treated},
         {"SELECT name, level, source, note, predictor, unit, form, coefficients ->> 0,"
          " coefficients ->> 1, drivers = 'frontal', terms, covariance, freedom FROM risk_function"
          " WHERE use_as = 'default' ORDER BY name, level",
@@ -348,6 +388,11 @@ static cp_status read_about(cp_store *store, cp_study_data *data, cp_error *erro
          " r.vehicle_km, r.vehicle_h, r.configuration_hash FROM replication AS r"
          " JOIN scenario AS s ON s.id = r.scenario_id JOIN variant AS v ON v.id = r.variant_id"
          " ORDER BY s.number, v.number, r.sweep, r.number"},
+        {"sweep",
+         "SELECT w.owner, coalesce(v.name, s.name) AS name, w.base, w.parameter, w.value"
+         " FROM sweep_value AS w LEFT JOIN variant AS v ON w.owner = 'variant' AND v.id ="
+         " w.owner_id LEFT JOIN scenario AS s ON w.owner = 'scenario' AND s.id = w.owner_id"
+         " ORDER BY w.parameter, w.value, 2"},
         {"sumo_collision_check", "SELECT * FROM sumo_collision_check"},
     };
     data->about = json_object();
@@ -408,6 +453,7 @@ void cp_study_data_destroy(cp_study_data *data)
     }
     free(data->risk);
     free(data->pair);
+    free(data->treated);
     free(data->scenario);
     free(data->variant);
     free(data->replication);

@@ -64,6 +64,9 @@ typedef enum cp_predictor {
         CP_PREDICTOR_COUNT
 } cp_predictor;
 
+/* Whether a predictor is a speed, which risk curves are drawn over. */
+bool cp_predictor_is_speed(cp_predictor predictor);
+
 /* A row of the table risk_function that comparisons use. */
 typedef struct cp_study_risk {
     char *name;
@@ -116,6 +119,15 @@ typedef struct cp_study_pair {
     char treated_type[16];                   /* "front-side", …; empty without a frontal one */
 } cp_study_pair;
 
+/* A vehicle of a crash that a baseline's crash became under a treatment; its crash is the
+ * baseline's, everything else its own. */
+typedef struct cp_study_treated {
+    size_t variant;
+    cp_study_vehicle vehicle;
+    double x_m; /* first contact of the treated crash, world */
+    double y_m;
+} cp_study_treated;
+
 typedef struct cp_study_data {
     json_t *about; /* the study's row, program versions, vehicle models: as stored, for reports */
     char *name;
@@ -139,10 +151,12 @@ typedef struct cp_study_data {
     size_t frontal_vehicle_count;
     size_t pair_count;
     cp_study_pair *pair; /* by crash and variant */
+    size_t treated_count;
+    cp_study_treated *treated; /* of all treated crashes, by crash, variant and role */
     size_t risk_count;
     cp_study_risk *risk; /* by name and level */
     size_t validity_count;
-    char **validity; /* [0] "inside", then the lists that occur */
+    char **validity; /* [0] "inside", then the lists that occur, treated crashes included */
 } cp_study_data;
 
 /* Read a study. The caller destroys it, also after an error. Errors: those of the store;

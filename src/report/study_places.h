@@ -21,6 +21,7 @@
     " AS frontal, row_number() OVER (ORDER BY r.place, x.number) - 1 AS place"                     \
     " FROM crash AS x JOIN r ON r.id = x.replication_id JOIN t USING (crash_type)),"               \
     " o AS (SELECT validity, row_number() OVER (ORDER BY validity <> 'inside', validity) - 1"      \
-    " AS place FROM (SELECT validity FROM crash_vehicle UNION SELECT 'inside')) "
+    " AS place FROM (SELECT validity FROM crash_vehicle UNION SELECT validity FROM"                \
+    " counterfactual_vehicle UNION SELECT 'inside')) "
 
 #endif

@@ -65,6 +65,45 @@ class Counterfactual(unittest.TestCase):
             .find(r => r[0] === "aeb" && r[1] === "mean change of OLC, g, avoided = 0")[2]""")
         self.assertEqual(shown.replace("\u2212", "-"), f"{mean:.1f}")
 
+    def test_treated_crashes_are_in_every_figure(self):
+        self.browser.run("""const s = document.getElementById("scenario"); s.value = ""; s.dispatchEvent(new Event("change"));""")
+        treatments = self.db.execute("SELECT count(DISTINCT variant) FROM counterfactual_pair").fetchone()[0]
+        names = [row[0] for row in self.db.execute("SELECT DISTINCT variant FROM counterfactual_pair ORDER BY 1")]
+        self.assertGreater(treatments, 1)
+        for figure in ("figure-above", "figure-above-delta-v", "figure-ecdf", "figure-delta-v"):
+            curves = self.browser.run("return document.querySelectorAll(`#${arguments[0]} .curve`).length", figure)
+            self.assertEqual(curves, 1 + treatments, figure)
+        points = self.browser.run("return document.querySelectorAll('#figure-scatter .point').length")
+        self.assertEqual(points, self.db.execute("""SELECT (SELECT count(*) FROM crash_vehicle WHERE olc_g IS NOT NULL AND frontal)
+            + (SELECT count(*) FROM counterfactual_vehicle AS w JOIN crash AS c ON c.id = w.crash_id
+               WHERE w.olc_g IS NOT NULL AND w.frontal AND c.crash_type LIKE 'front-%')""").fetchone()[0])
+        for figure in ("figure-map", "figure-forest", "figure-convergence"):
+            text = self.browser.run("return document.getElementById(arguments[0]).querySelector('svg').textContent", figure)
+            for name in names:
+                self.assertIn(name, text, figure)
+        cards = self.browser.run("return Array.from(document.querySelectorAll('#cards .card'), c => c.dataset.variant)")
+        self.assertEqual(sorted(cards), sorted(["baseline"] + names))
+
+    def test_the_distribution_starts_at_what_was_avoided(self):
+        self.browser.run("""const s = document.getElementById("scenario"); s.value = ""; s.dispatchEvent(new Event("change"));""")
+        shown = self.browser.run("return Array.from(document.querySelectorAll('#figure-ecdf svg > g > text'), t => t.textContent)")
+        avoided, crashes = self.db.execute("""WITH judged AS (SELECT crash_id FROM counterfactual_pair WHERE baseline_crash_type LIKE 'front-%'
+            GROUP BY 1 HAVING sum(outcome = 'invalid' OR baseline_olc_g IS NULL OR treated_olc_g IS NULL) = 0)
+            SELECT sum(outcome = 'avoided'), count(*) FROM counterfactual_pair JOIN judged USING (crash_id) WHERE variant = 'aeb'""").fetchone()
+        self.assertGreater(avoided, 0)
+        self.assertTrue(any(text.startswith(f"aeb (n = {crashes}, {avoided} avoided") for text in shown), shown)
+
+    def test_three_widths(self):
+        for width in (390, 768, 1440):
+            self.browser.resize(width, 900)
+            self.browser.settle()
+            self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), width)
+            outside = self.browser.run("""
+                return Array.from(document.querySelectorAll("figure svg text")).filter(t => {
+                    const own = t.getBoundingClientRect(), box = t.closest("figure").getBoundingClientRect();
+                    return own.width > 0 && (own.left < box.left || own.right > box.right); }).map(t => t.textContent)""")
+            self.assertEqual(outside, [], "text of a figure is cut off")
+
     def test_console_is_quiet_and_a_picture_is_left(self):
         self.assertEqual([e["message"] for e in self.browser.log("browser")], [])
         self.browser.run("document.getElementById('figure-flow').scrollIntoView()")

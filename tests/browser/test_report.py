@@ -4,6 +4,7 @@
 import argparse
 import csv
 import json
+import math
 import pathlib
 import re
 import sqlite3
@@ -26,7 +27,7 @@ ANY_STUDY = ["the_scorecard_has_a_line_a_class", "requests_nothing_but_itself", 
              "a_pair_is_a_seed_run_with_both", "every_figure_has_words_and_a_table", "three_widths_and_two_themes"]
 
 FIGURES = ["figure-rate", "figure-ecdf", "figure-difference", "figure-paired", "figure-scatter", "figure-map", "figure-sites",
-           "figure-benefit"]
+           "figure-benefit", "figure-forest", "figure-above-delta-v", "figure-delta-v", "figure-convergence", "figure-risk"]
 # In this order, from the question to what repeats the study.
 SECTIONS = ["h-variants", "h-design", "h-rates", "h-quantiles", "h-contrasts", "h-where", "h-injuries", "h-pulses",
             "h-validity", "h-reproduce"]
@@ -110,13 +111,16 @@ class Report(unittest.TestCase):
             self.browser.run("return document.getElementById('question').textContent"), question)
 
     def test_answer_and_licence_are_there(self):
-        answer = self.browser.run("return document.getElementById('answer').textContent")
+        answer, conditions = self.browser.run("return ['answer', 'conditions'].map(id => document.getElementById(id).textContent)")
         frontal = self.count("SELECT frontal_crashes FROM olc_by_variant WHERE is_baseline = 1")
         inside = self.count("SELECT count(*) FROM crash_list WHERE variant = 'baseline' AND "
                             "crash_type = 'front-front' AND validity = 'inside'")
-        self.assertIn(f"{frontal} frontal crashes with baseline ({inside} of them front-front", answer)
-        self.assertIn("failed_to_see with probability 0.05", answer)
-        self.assertIn("conditional on the assumed driver errors", answer)
+        # A sentence a treatment, its interval first; what it all rests on behind it, once.
+        self.assertRegex(answer, r"^aeb: \d\.\d\d to \d\.\d\d times the rate of frontal crashes with baseline \(95 % interval; estimate ")
+        self.assertEqual(answer.count("\n"), 0)
+        self.assertIn(f"{frontal} frontal crashes with baseline ({inside} of them front-front", conditions)
+        self.assertIn("failed_to_see with probability 0.05", conditions)
+        self.assertIn("conditional on the assumed driver errors", conditions)
         self.assertIn("Copyright 2010-2017 Mike Bostock", self.page)
         # Injuries have a section of their own; none is said of OLC.
         for section in ("h-rates", "h-quantiles", "h-contrasts"):
@@ -167,6 +171,63 @@ class Report(unittest.TestCase):
         wanted = [list(row[:5]) for row in self.db.execute(query["sql"]).fetchall()]
         self.assertEqual(shown, wanted)
         self.assertGreater(sum(row[2] for row in wanted), 100)
+
+    def content(self, figure):
+        """The cells of a figure's table, by row."""
+        return self.browser.run("""
+            const details = document.querySelector(`#${arguments[0]} details`);
+            details.open = true; details.ontoggle();
+            return Array.from(document.querySelectorAll(`#${arguments[0]} table tbody tr`), row => Array.from(row.cells, cell => cell.textContent));""", figure)
+
+    def test_delta_v_agrees_with_sql(self):
+        rows = [row for row in self.content("figure-delta-v") if row[0] == "aeb"]
+        wanted = [row[0] for row in self.db.execute(
+            "SELECT DISTINCT round(3.6 * delta_v_m_s, 4) FROM frontal_vehicle WHERE variant = 'aeb' AND delta_v_m_s IS NOT NULL ORDER BY 1")]
+        shown = sorted({float(row[1]) for row in rows})
+        self.assertEqual(len(shown), min(len(wanted), len(shown)))
+        self.assertGreater(len(shown), 20)
+        for value in shown:
+            self.assertLess(min(abs(value - w) for w in wanted), 1e-2)
+
+    def test_what_is_laid_under_delta_v_is_drawn_and_in_the_table(self):
+        # A part of the script that adds a distribution does so before the first drawing.
+        page = OUTPUT / "under.html"
+        page.write_text(self.page.replace("const under = what", "UNDER_DELTA_V.push(() => ({label: 'laid under', x: [10, 20], share: [0.5, 1], first: 0}));\nconst under = what"), encoding="utf-8")
+        self.browser.open(page.resolve().as_uri())
+        self.browser.settle()
+        self.assertEqual(self.browser.run("return document.querySelectorAll('#figure-delta-v .under').length"), 1)
+        self.assertEqual(self.browser.run("return document.querySelectorAll('#figure-ecdf .under').length"), 0)
+        self.assertEqual([row[1] for row in self.content("figure-delta-v") if row[0] == "laid under"], ["10", "20"])
+
+    def test_the_forest_has_every_scenario_and_all_of_them(self):
+        rows = self.content("figure-forest")
+        scenarios = [row[0] for row in self.db.execute("SELECT name FROM scenario ORDER BY number")]
+        self.assertEqual([row[1] for row in rows], [name.replace("_", " ") for name in scenarios] + ["all scenarios, stratified"])
+        for name, row in zip(scenarios, rows):
+            crashes, km = zip(*(self.db.execute("SELECT sum(frontal_crashes), sum(vehicle_km) FROM replication_crashes WHERE scenario = ? AND variant = ? "
+                "AND replication IN (SELECT replication FROM replication_crashes WHERE scenario = ?1 GROUP BY 1 HAVING count(*) = 2)", (name, variant)).fetchone() for variant in ("baseline", "aeb")))
+            self.assertEqual([int(row[6]), int(row[7])], list(crashes))
+            self.assertAlmostEqual(float(row[2]), crashes[1] / km[1] / (crashes[0] / km[0]), places=4)
+        # Stratified: Mantel and Haenszel's ratio lies between those of the scenarios.
+        ratios = [float(row[2]) for row in rows]
+        self.assertTrue(min(ratios[:-1]) <= ratios[-1] <= max(ratios[:-1]))
+        drawn = self.browser.run("return document.querySelectorAll('#figure-forest .estimate').length")
+        self.assertEqual(drawn, len(rows))
+        self.choose(scenarios[0])
+        self.assertEqual(len(self.content("figure-forest")), 1)
+
+    def test_convergence_ends_at_the_figure_itself(self):
+        last = self.content("figure-convergence")[-1]
+        self.assertEqual(float(last[2]), float(self.content("figure-forest")[-1][2]))
+
+    def test_risk_curves_are_the_functions(self):
+        rows = {(row[1], row[0], float(row[3])): float(row[4]) for row in self.content("figure-risk")}
+        for name, level, c0, c1, per_si in self.db.execute("SELECT name, level, coefficients ->> 0, coefficients ->> 1, "
+                "CASE unit WHEN 'mph' THEN 1 / 0.44704 WHEN 'km/h' THEN 3.6 ELSE 1 END FROM risk_function WHERE form = 'logistic'"):
+            shown = [(x, p) for (n, l, x), p in rows.items() if (n, l) == (name, level)]
+            for x, p in shown:
+                self.assertAlmostEqual(p, 1 / (1 + math.exp(-(c0 + c1 * x / 3.6 * per_si))), places=3)
+        self.assertGreater(len(rows), 100)
 
     def test_a_pair_is_a_seed_run_with_both(self):
         for scenario, crash_type, scope in (("", "", "all"), ("left_turn", "front-side", "all"), ("", "front-front", "inside")):

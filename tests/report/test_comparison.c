@@ -155,7 +155,9 @@ static void answer_names_crashes_validity_and_assumptions(void **state)
     assert_int_equal(cp_comparison_answer(&f->data, &f->comparison, &answer, &error), CP_OK);
     for (size_t k = 0; k < 2; k++) {
         const cp_variant_figures *v = &f->comparison.variant[k];
-        snprintf(expected, sizeof expected, "%zu frontal crashes with %s (%zu of them front-front",
+        snprintf(expected, sizeof expected,
+                 k == 0 ? "%zu frontal crashes with %s (%zu of them front-front"
+                        : "%zu frontal crashes with %s (%zu)",
                  v->frontal_crashes, f->data.variant[k].name, v->front_front_inside);
         assert_non_null(strstr(answer, expected));
     }

@@ -156,15 +156,26 @@ static void answer_tells_what_became_of_the_crashes(void **state)
 {
     fixture *f = *state;
     cp_error error = {0};
-    char *answer = NULL, expected[128];
+    char *answer = NULL, expected[256];
     assert_int_equal(cp_comparison_answer(&f->data, &f->comparison, &answer, &error), CP_OK);
+    // A sentence each, its interval first.
+    const char *line = answer;
     for (size_t k = 0; k < 2; k++) {
         const cp_counterfactual_figures *c = &f->comparison.counterfactual[k];
+        cp_interval share = c->share[CP_OUTCOME_AVOIDED];
         snprintf(expected, sizeof expected,
-                 "With %s %zu of %zu valid baseline crashes were avoided",
-                 f->data.variant[c->variant].name, c->outcome[CP_OUTCOME_AVOIDED], c->valid);
-        assert_non_null(strstr(answer, expected));
+                 "%s: %.0f to %.0f %% of the frontal crashes with baseline avoided (95 %% "
+                 "interval; %zu of %zu valid ones",
+                 f->data.variant[c->variant].name, 100.0 * share.low, 100.0 * share.high,
+                 c->outcome[CP_OUTCOME_AVOIDED], c->valid);
+        assert_memory_equal(line, expected, strlen(expected));
+        line = strchr(line, '\n') + 1;
     }
+    // Then an empty line and the conditions, each once.
+    assert_int_equal(*line, '\n');
+    assert_null(strchr(line + 1, '\n'));
+    assert_ptr_equal(strstr(answer, "Hodges and Lehmann"), strstr(line, "Hodges and Lehmann"));
+    assert_null(strstr(strstr(line, "Hodges and Lehmann") + 1, "Hodges and Lehmann"));
     assert_non_null(strstr(answer, "could not be judged"));
     free(answer);
 }

@@ -4,6 +4,7 @@
 #include "core/log.h"
 #include "core/progress.h"
 #include "run/child.h"
+#include "run/confinement.h"
 #include "run/fleet.h"
 #include "run/owner.h"
 #include "run/worker.h"
@@ -11,6 +12,7 @@
 #include "store/claim.h"
 #include "store/query.h"
 #include "study/controls_text.h"
+#include "study/scenario_outputs.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -114,17 +116,18 @@ static cp_status load_inputs(runner *run, cp_error *error)
     return status;
 }
 
+// For a worker; NULL, the end of its words: it is confined.
+static const char *outputs_word(const runner *run)
+{
+    return run->options->free_outputs ? "--allow-sumo-outputs" : NULL;
+}
+
 // Let a worker start one scenario: only it can load SUMO.
 static cp_status probe_scenario(runner *run, const cp_study_scenario *scenario, cp_error *error)
 {
-    const char *arguments[] = {"crashpulse-worker",
-                               "--study",
-                               run->options->study_path,
-                               "--probe",
-                               scenario->name,
-                               "--parent",
-                               run->parent,
-                               NULL};
+    const char *arguments[] = {"crashpulse-worker", "--study",         run->options->study_path,
+                               "--probe",           scenario->name,    "--parent",
+                               run->parent,         outputs_word(run), NULL};
     cp_child child;
     cp_child_end end;
     cp_status status = cp_child_start(run->worker_path, arguments, &child, error);
@@ -138,14 +141,29 @@ static cp_status probe_scenario(runner *run, const cp_study_scenario *scenario, 
                    end.reason);
 }
 
+static cp_status check_outputs(const cp_study_scenario *scenario, cp_error *error)
+{
+    const cp_scenario_inputs inputs = cp_study_scenario_inputs(scenario);
+    return cp_scenario_outputs_check(&inputs, error);
+}
+
 // Of the values of a sweep one is enough, unless SUMO is started otherwise for each.
 static cp_status probe_scenarios(runner *run, cp_error *error)
 {
     const cp_study_scenario *scenarios = run->study.scenarios;
+    bool is_free = run->options->free_outputs;
     cp_status status = CP_OK;
-    for (size_t k = 0; status == CP_OK && k < run->study.scenario_count; k++)
-        if (k == 0 || !cp_study_scenarios_start_alike(&scenarios[k - 1], &scenarios[k]))
+    for (size_t k = 0; status == CP_OK && k < run->study.scenario_count; k++) {
+        if (k > 0 && cp_study_scenarios_start_alike(&scenarios[k - 1], &scenarios[k]))
+            continue;
+        if (!is_free)
+            status = check_outputs(&scenarios[k], error);
+        if (status == CP_OK)
             status = probe_scenario(run, &scenarios[k], error);
+    }
+    if (status == CP_OK && !is_free && !cp_confinement_has_folders())
+        cp_log_warning("this system cannot keep workers to folders (Landlock): what SUMO writes is "
+                       "only looked for in its options and files");
     return status;
 }
 
@@ -270,6 +288,7 @@ static cp_status start_background(runner *run, runner_job *job, cp_error *error)
                                row->configuration_hash,
                                "--parent",
                                run->parent,
+                               outputs_word(run),
                                NULL};
     cp_status status = cp_child_start(run->worker_path, arguments, &job->child, error);
     if (status != CP_OK)
@@ -295,6 +314,7 @@ static cp_status start_job(runner *run, runner_job *job, cp_error *error)
                                id,
                                "--parent",
                                run->parent,
+                               outputs_word(run),
                                NULL};
     cp_status status = cp_child_start(run->worker_path, arguments, &job->child, error);
     if (status != CP_OK)

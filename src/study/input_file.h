@@ -5,7 +5,18 @@
 #include "core/error.h"
 #include "core/hash.h"
 
+#include <stdbool.h>
 #include <stddef.h>
+
+/* A place in a file where SUMO is given the name of a file to write: an attribute file, output or
+ * dest (detectors, edge data, timed events, calibrators), a parameter whose key ends in the word
+ * file or output (devices, traffic lights), or a document type or entity, which is read, from
+ * elsewhere. */
+typedef struct cp_input_output {
+    size_t line; /* 0: not known */
+    char *what;  /* "<edgeData file>", "device.ssm.file" */
+    char *name;  /* as written */
+} cp_input_output;
 
 /* A file that SUMO reads: its hash, and what other files it makes SUMO read. Compressed files
  * (gzip) are looked into as well. */
@@ -16,13 +27,20 @@ typedef struct cp_input_file {
     size_t include_count;
     char **values; /* of the parameters with the key looked for */
     size_t value_count;
+    cp_input_output *outputs; /* if looked for */
+    size_t output_count;
 } cp_input_file;
 
-/* Read one, looking for <param key="..." value="..."/> with this key (NULL: none). What is no XML
- * includes nothing. Zero-initialise; the caller destroys, after a failure too. Errors: CP_BAD_INPUT
- * for a file that cannot be read; CP_NO_MEMORY. */
-CP_MUST_CHECK cp_status cp_input_file_read(const char *path, const char *key, cp_input_file *file,
-                                           cp_error *error);
+/* What is looked for besides. */
+typedef struct cp_input_search {
+    const char *key; /* values of <param key="..." value="..."/> with this key; NULL: none */
+    bool outputs;    /* what would make SUMO write or connect */
+} cp_input_search;
+
+/* Read one. What is no XML includes nothing. Zero-initialise; the caller destroys, after a failure
+ * too. Errors: CP_BAD_INPUT for a file that cannot be read; CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_input_file_read(const char *path, const cp_input_search *search,
+                                           cp_input_file *file, cp_error *error);
 void cp_input_file_destroy(cp_input_file *file);
 
 #endif

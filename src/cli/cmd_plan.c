@@ -81,13 +81,15 @@ typedef struct planned {
     size_t dropped;          /* replications in the database that are planned no more */
 } planned;
 
-static cp_status make_plan(const char *path, planned *p, cp_error *error)
+// What a database holds is compared by hashes.
+static cp_status make_plan(const char *path, bool hashed, planned *p, cp_error *error)
 {
     cp_status status = cp_study_load(path, &p->study, error);
     if (status == CP_OK)
         status = cp_fleet_load(&p->study, &p->fleet, error);
     if (status == CP_OK)
-        status = cp_plan_create(&p->study, p->fleet.rows, p->fleet.count, &p->rows, error);
+        status = (hashed ? cp_plan_create : cp_plan_create_unhashed)(
+            &p->study, p->fleet.rows, p->fleet.count, &p->rows, error);
     return status;
 }
 
@@ -298,7 +300,7 @@ cp_status cmd_plan(int argc, char **argv, cp_error *error)
     planned p = {0};
     cp_error contradiction = {0};
     cp_status agrees = CP_OK;
-    cp_status status = make_plan(a.study_path, &p, error);
+    cp_status status = make_plan(a.study_path, a.db_path != NULL, &p, error);
     // What the database contradicts is said below the plan.
     if (status == CP_OK && a.db_path != NULL)
         agrees = look_into_database(a.db_path, &p, &contradiction);

@@ -70,22 +70,31 @@ static bool is_ours(const runner *run, size_t place)
     return shards == 0 || place % shards == run->options->shard - 1;
 }
 
-static bool is_ours_by_id(const runner *run, int64_t replication_id)
+static int by_id(const void *one, const void *other)
 {
-    const cp_replication_row *row = cp_plan_find(&run->plan, replication_id);
-    return row != NULL && is_ours(run, (size_t)(row - run->plan.replication));
+    int64_t a = *(const int64_t *)one, b = *(const int64_t *)other;
+    return (a > b) - (a < b);
 }
 
 // Of what waits, keep our share; backgrounds are dealt out in turn too.
-static void keep_ours(runner *run)
+static cp_status keep_ours(runner *run, cp_error *error)
 {
     for (size_t k = 0; k < run->plan.background_count; k++)
         run->background_missing[k] &= is_ours(run, k);
-    size_t kept = 0;
+    int64_t *ours = malloc((run->plan.replication_count + 1) * sizeof *ours);
+    if (ours == NULL)
+        return cp_fail_memory(error, "shard");
+    size_t count = 0, kept = 0;
+    for (size_t k = 0; k < run->plan.replication_count; k++)
+        if (is_ours(run, k))
+            ours[count++] = run->plan.replication[k].id;
+    qsort(ours, count, sizeof *ours, by_id);
     for (size_t k = 0; k < run->waiting_count; k++)
-        if (is_ours_by_id(run, run->waiting[k]))
+        if (bsearch(&run->waiting[k], ours, count, sizeof *ours, by_id) != NULL)
             run->waiting[kept++] = run->waiting[k];
     run->waiting_count = kept;
+    free(ours);
+    return CP_OK;
 }
 
 // ---- preparation ---------------------------------------------------------------------------
@@ -194,7 +203,7 @@ static cp_status prepare_store(runner *run, cp_error *error)
     if (status == CP_OK)
         status = find_backgrounds(run, error);
     if (status == CP_OK && run->options->shards > 0)
-        keep_ours(run);
+        status = keep_ours(run, error);
     if (status == CP_OK)
         status = cp_query_number(
             run->store, "SELECT count(*) FROM replication WHERE status = 'done'", &done, error);

@@ -139,7 +139,27 @@ static cp_status add_report(const collision_view *view, const char *found_as, do
                : cp_fail_memory(error, "collision of SUMO");
 }
 
-static cp_status assess_one(collision_view *view, cp_result_rows *results,
+// One of the two is not in the record.
+static cp_status take_missing(const collision_view *view, int missing, bool strict,
+                              cp_assessment_count *count, cp_error *error)
+{
+    const cp_listed_collision *listed = view->listed;
+    cp_error reason = {0};
+    cp_status status = cp_fail(
+        &reason, CP_BAD_INPUT,
+        "%s:%zu: '%s' is not in the record around %g s: whether it and '%s' touch is not known",
+        view->list_path, listed->line, listed->id[missing], listed->time_s,
+        listed->id[1 - missing]);
+    if (strict) {
+        *error = reason;
+        return status;
+    }
+    count->bad++;
+    cp_log_warning("%s", reason.text);
+    return CP_OK;
+}
+
+static cp_status assess_one(collision_view *view, bool strict, cp_result_rows *results,
                             cp_assessment_count *count, cp_error *error)
 {
     const cp_listed_collision *listed = view->listed;
@@ -153,13 +173,10 @@ static cp_status assess_one(collision_view *view, cp_result_rows *results,
     contact.impact.time_s += view->step_length_s;
     const char *found_as = "no_contact";
     if (!contact.is_found) {
-        count->no_contact++;
         int missing = view->track[0].count == 0 ? 0 : view->track[1].count == 0 ? 1 : -1;
+        count->no_contact += missing < 0;
         if (missing >= 0)
-            cp_log_warning(
-                "%s:%zu: '%s' is not in the record around %g s: whether it and '%s' touch "
-                "is not known",
-                view->list_path, listed->line, ids[missing], listed->time_s, ids[1 - missing]);
+            status = take_missing(view, missing, strict, count, error);
         else
             cp_log_warning("%s:%zu: '%s' and '%s' do not touch, nearest %g m", view->list_path,
                            listed->line, ids[0], ids[1], contact.gap_m);
@@ -205,7 +222,7 @@ static cp_status check_seen(const cp_collision_list *list, const char *list_path
 
 cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_path,
                                const cp_fcd_record *record, const cp_vtypes *types,
-                               const cp_fleet *fleet, cp_result_rows *results,
+                               const cp_fleet *fleet, cp_result_rows *results, bool strict,
                                cp_assessment_count *count, cp_error *error)
 {
     *count = (cp_assessment_count){.listed = list->count};
@@ -221,7 +238,7 @@ cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_p
         for (int role = 0; status == CP_OK && role < 2; role++)
             status = make_track(&view, &record->track[k][role], types, role, error);
         if (status == CP_OK)
-            status = assess_one(&view, results, count, error);
+            status = assess_one(&view, strict, results, count, error);
         for (int role = 0; role < 2; role++) {
             free(view.state[role]);
             free(view.time_s[role]);
@@ -421,13 +438,33 @@ static cp_status assess_row(const cp_configuration_list *list, size_t number, co
 }
 
 cp_status cp_assess_configurations(const cp_configuration_list *list, const char *list_path,
-                                   const cp_fleet *fleet, cp_result_rows *results,
+                                   const cp_fleet *fleet, cp_result_rows *results, bool strict,
                                    cp_assessment_count *count, cp_error *error)
 {
+    cp_error first = {0};
     *count = (cp_assessment_count){.listed = list->count};
     cp_status status = CP_OK;
-    for (size_t k = 0; status == CP_OK && k < list->count; k++)
-        status = assess_row(list, k, list_path, fleet, results, count, error);
+    for (size_t k = 0; status == CP_OK && k < list->count; k++) {
+        cp_error reason = {0};
+        size_t before = results->crash_count;
+        status = assess_row(list, k, list_path, fleet, results, count, &reason);
+        if (status == CP_OK)
+            continue;
+        if (count->bad == 0)
+            first = reason;
+        if (strict || status != CP_BAD_INPUT || results->crash_count != before) {
+            *error = reason;
+            continue;
+        }
+        status = CP_OK;
+        if (++count->bad < list->count)
+            cp_log_warning("%s; left out", reason.text);
+    }
     count->crashes = results->crash_count;
+    // Not one is right: the first says why.
+    if (status == CP_OK && count->bad == list->count) {
+        *error = first;
+        return CP_BAD_INPUT;
+    }
     return status;
 }

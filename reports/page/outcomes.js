@@ -81,22 +81,23 @@ const benefitFigure = figure("figure-benefit", "Benefit in expected injured driv
 // Functions of a speed, over km/h; the levels have the colours, the functions the dashes.
 const riskCurves = () => data.risks.filter(r => r.curve);
 const riskLevels = [...new Set(data.risks.map(r => r.level))], riskNames = [...new Set(data.risks.map(r => r.name))];
+const riskLabel = r => `${r.level} (${r.name})${r.curve.crash_type ? `, ${r.curve.crash_type}` : ""}`;
 const riskStyle = (node, r) => node.style("stroke", `var(--v${1 + riskLevels.indexOf(r.level) % 5})`).style("stroke-dasharray", DASHES[riskNames.indexOf(r.name) % 6]).style("stroke-width", 2.2);
 
 const riskFigure = figure("figure-risk", "Injury risk over delta-v",
-  () => "Probability that a driver is injured at least so badly, by the functions that the table below sums up: what stands between delta-v and expected injuries. Beyond the crashes they were made from they extrapolate; sources in the table.",
+  () => "Probability that a driver is injured at least so badly, by the functions that the table below sums up: what stands between delta-v and expected injuries. Beyond the crashes they were made from they extrapolate. A function of the crash type is drawn for front-front, one of the drivers as their mean; sources in the table.",
   function (svg, width) {
-    const curves = riskCurves(), top = legend(svg, width, curves.map((r, k) => ({ variant: k, label: `${r.level} (${r.name})` })), (g, k) => riskStyle(g.append("line").attr("x2", 18), curves[k]));
+    const curves = riskCurves(), top = legend(svg, width, curves.map((r, k) => ({ variant: k, label: riskLabel(r) })), (g, k) => riskStyle(g.append("line").attr("x2", 18), curves[k]));
     const margin = { top: top + 4, right: 16, bottom: 48, left: 52 }, height = margin.top + Math.min(330, 140 + width * 0.35) + margin.bottom;
     const x = d3.scaleLinear().domain([0, d3.max(curves, r => d3.max(r.curve.x))]).range([0, width - margin.left - margin.right]);
     const y = d3.scaleLinear().domain([0, 1]).range([height - margin.top - margin.bottom, 0]);
     const inner = frame(svg, width, height, margin, x, y, curves.every(r => r.predictor.startsWith("delta_v")) ? "delta-v, km/h" : "predictor, km/h", "probability");
     curves.filter(r => r.curve.low).forEach(r => inner.append("path").attr("class", "band").attr("d", d3.area().x(v => x(v)).y0((v, k) => y(r.curve.low[k])).y1((v, k) => y(r.curve.high[k]))(r.curve.x)).style("fill", `var(--v${1 + riskLevels.indexOf(r.level) % 5})`).style("opacity", 0.14));
     curves.forEach(r => riskStyle(inner.append("path").attr("class", "curve").attr("d", d3.line().x(v => x(v)).y((v, k) => y(r.curve.probability[k]))(r.curve.x)).style("fill", "none"), r));
-    readout(svg, inner, x, y.range()[0], value => [`${fixed(value, 0)} km/h`, ...curves.map(r => `${r.level} (${r.name}): ${percent(r.curve.probability[Math.min(r.curve.x.length - 1, Math.round(value / (r.curve.x[1] - r.curve.x[0])))])}`)]);
+    readout(svg, inner, x, y.range()[0], value => [`${fixed(value, 0)} km/h`, ...curves.map(r => `${riskLabel(r)}: ${percent(r.curve.probability[Math.min(r.curve.x.length - 1, Math.round(value / (r.curve.x[1] - r.curve.x[0])))])}`)]);
     return height;
   },
   function () {
     const rows = d3.merge(riskCurves().map(r => r.curve.x.map((v, k) => [r.level, r.name, r.predictor, v, r.curve.probability[k]])));
-    return { summary: riskCurves().map(r => `${r.level} (${r.name}): ${percent(r.curve.probability[25])} at ${r.curve.x[25]} km/h`).join("; "), columns: ["level", "function", "predictor", "km_h", "probability"], rows: rows };
+    return { summary: riskCurves().map(r => `${riskLabel(r)}: ${percent(r.curve.probability[25])} at ${r.curve.x[25]} km/h`).join("; "), columns: ["level", "function", "predictor", "km_h", "probability"], rows: rows };
   });

@@ -240,33 +240,50 @@ static bool is_doubtful(const collision_view *view, const cp_recorded_contact *c
             contact->impact.time_s > view->listed->time_s + 1e-6);
 }
 
-// Why the two have no contact: told. True when it is not known whether and how they met.
-static bool tell_missed(const collision_view *view, const cp_recorded_contact *contact)
+// One of the two is not in the record.
+static cp_status take_missing(const collision_view *view, int missing, bool strict,
+                              cp_assessment_count *count, cp_error *error)
+{
+    const cp_listed_collision *listed = view->listed;
+    cp_error reason = {0};
+    cp_status status = cp_fail(
+        &reason, CP_BAD_INPUT,
+        "%s:%zu: '%s' is not in the record around %g s: whether it and '%s' touch is not known",
+        view->list_path, listed->line, listed->id[missing], listed->time_s,
+        listed->id[1 - missing]);
+    if (strict) {
+        *error = reason;
+        return status;
+    }
+    count->bad++;
+    cp_log_warning("%s", reason.text);
+    return CP_OK;
+}
+
+// Both are in the record and have no contact: told why, and counted. How near the two came is not
+// known when it is not known how they met.
+static void tell_missed(const collision_view *view, cp_recorded_contact *contact,
+                        cp_assessment_count *count)
 {
     const cp_listed_collision *listed = view->listed;
     const char *one = listed->id[0], *other = listed->id[1];
-    if (view->track[0].count == 0 || view->track[1].count == 0) {
-        bool is_other = view->track[0].count > 0;
-        cp_log_warning("%s:%zu: '%s' is not in the record around %g s: whether it and '%s' touch "
-                       "is not known",
-                       view->list_path, listed->line, is_other ? other : one, listed->time_s,
-                       is_other ? one : other);
-        return true;
-    }
-    if (contact->is_taken && view->step_length_s > CP_FCD_COARSEST_PERIOD_S) {
+    bool is_unknown = contact->is_taken && view->step_length_s > CP_FCD_COARSEST_PERIOD_S;
+    count->unknown += is_unknown;
+    count->no_contact += !is_unknown;
+    if (is_unknown) {
+        contact->gap_m = NAN;
         cp_log_warning("%s:%zu: SUMO took '%s' or '%s' away in the step of %g s in which they "
                        "collided: how they met is not known (write the record with "
                        "--collision.action warn, or in steps of %g s at most)",
                        view->list_path, listed->line, one, other, view->step_length_s,
                        CP_FCD_COARSEST_PERIOD_S);
-        return true;
+    } else {
+        cp_log_warning("%s:%zu: '%s' and '%s' do not touch, nearest %g m", view->list_path,
+                       listed->line, one, other, contact->gap_m);
     }
-    cp_log_warning("%s:%zu: '%s' and '%s' do not touch, nearest %g m", view->list_path,
-                   listed->line, one, other, contact->gap_m);
-    return false;
 }
 
-static cp_status assess_one(collision_view *view, cp_result_rows *results,
+static cp_status assess_one(collision_view *view, bool strict, cp_result_rows *results,
                             cp_assessment_count *count, cp_error *error)
 {
     const cp_listed_collision *listed = view->listed;
@@ -282,13 +299,12 @@ static cp_status assess_one(collision_view *view, cp_result_rows *results,
     // SUMO's files name a step by its beginning, its clock and we by its end.
     contact.impact.time_s += view->step_length_s;
     const char *found_as = "no_contact";
+    int missing = view->track[0].count == 0 ? 0 : view->track[1].count == 0 ? 1 : -1;
     bool is_confirmed = contact.is_found && contact.impact.verdict == CP_CONTACT_CONFIRMED;
-    if (is_missed) {
-        bool is_unknown = tell_missed(view, &contact);
-        count->unknown += is_unknown;
-        count->no_contact += !is_unknown;
-        if (is_unknown)
-            contact.gap_m = NAN;
+    if (missing >= 0) {
+        status = take_missing(view, missing, strict, count, error);
+    } else if (is_missed) {
+        tell_missed(view, &contact, count);
     } else if (!is_confirmed) {
         count->filtered++;
         found_as = cp_contact_verdict_text(contact.impact.verdict);
@@ -344,7 +360,7 @@ static cp_status check_seen(const cp_collision_list *list, const char *list_path
 
 cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_path,
                                cp_fcd_record *record, const cp_vtypes *types, const cp_fleet *fleet,
-                               cp_assessment_keep keep, cp_result_rows *results,
+                               cp_assessment_keep keep, bool strict, cp_result_rows *results,
                                cp_assessment_count *count, cp_error *error)
 {
     *count = (cp_assessment_count){.listed = list->count};
@@ -363,7 +379,7 @@ cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_p
         if (status == CP_OK && record->of_places)
             status = lead_in(&view, error);
         if (status == CP_OK)
-            status = assess_one(&view, results, count, error);
+            status = assess_one(&view, strict, results, count, error);
         for (int role = 0; role < 2; role++) {
             free(view.state[role]);
             free(view.time_s[role]);
@@ -566,17 +582,36 @@ static cp_status assess_row(const cp_configuration_list *list, size_t number, co
 }
 
 cp_status cp_assess_configurations(const cp_configuration_list *list, const char *list_path,
-                                   const cp_fleet *fleet, cp_assessment_keep keep,
+                                   const cp_fleet *fleet, cp_assessment_keep keep, bool strict,
                                    cp_result_rows *results, cp_assessment_count *count,
                                    cp_error *error)
 {
+    cp_error first = {0};
     *count = (cp_assessment_count){.listed = list->count};
     cp_status status = CP_OK;
     for (size_t k = 0; status == CP_OK && k < list->count; k++) {
-        status = assess_row(list, k, list_path, fleet, results, count, error);
+        cp_error reason = {0};
+        size_t before = results->crash_count;
+        status = assess_row(list, k, list_path, fleet, results, count, &reason);
         if (keep == CP_KEEP_NO_PULSES)
             drop_last_pulses(results);
+        if (status == CP_OK)
+            continue;
+        if (count->bad == 0)
+            first = reason;
+        if (strict || status != CP_BAD_INPUT || results->crash_count != before) {
+            *error = reason;
+            continue;
+        }
+        status = CP_OK;
+        if (++count->bad < list->count)
+            cp_log_warning("%s; left out", reason.text);
     }
     count->crashes = results->crash_count;
+    // Not one is right: the first says why.
+    if (status == CP_OK && count->bad == list->count) {
+        *error = first;
+        return CP_BAD_INPUT;
+    }
     return status;
 }

@@ -35,6 +35,7 @@ typedef struct arguments {
     size_t type_count;
     const char *db_path;
     const char *name;
+    bool strict;
     cp_format format;
 } arguments;
 
@@ -46,7 +47,8 @@ enum {
     VEHICLE = 'v',
     TYPE = 'T',
     DB = 'd',
-    NAME = 'n'
+    NAME = 'n',
+    STRICT = 256
 };
 
 static const struct argp_option OPTIONS[] = {
@@ -65,6 +67,11 @@ static const struct argp_option OPTIONS[] = {
     {"type", TYPE, "TYPE=VEHICLE", 0, "what a SUMO vehicle type crashes as; may be repeated", 0},
     {"db", DB, "FILE", 0, "store crashes and pulses in this new database", 0},
     {"name", NAME, "NAME", 0, "name of the study in the database (default: assessment)", 0},
+    {"strict", STRICT, NULL, 0,
+     "end at the first row that cannot be assessed; without it such rows are named and left out, "
+     "and "
+     "the exit code is 2 when the others are done",
+     0},
     {0},
 };
 
@@ -118,6 +125,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case NAME:
         a->name = argument;
+        return 0;
+    case STRICT:
+        a->strict = true;
         return 0;
     case ARGP_KEY_ARG:
         argp_error(state, "no such argument: '%s'", argument);
@@ -279,12 +289,13 @@ static cp_status assess(assessment *self, cp_error *error)
     if (self->results.crash_options == NULL)
         status = cp_fail_memory(error, "crash options");
     else if (a->configurations_path != NULL)
-        status = cp_assess_configurations(&self->configurations, a->configurations_path,
-                                          &self->fleet, keep, &self->results, &self->count, error);
-    else
         status =
-            cp_assess_collisions(&self->collisions, a->collisions_path, &self->record, &self->types,
-                                 &self->fleet, keep, &self->results, &self->count, error);
+            cp_assess_configurations(&self->configurations, a->configurations_path, &self->fleet,
+                                     keep, a->strict, &self->results, &self->count, error);
+    else
+        status = cp_assess_collisions(&self->collisions, a->collisions_path, &self->record,
+                                      &self->types, &self->fleet, keep, a->strict, &self->results,
+                                      &self->count, error);
     cp_crash_library_end();
     self->results.wall_time_s = cp_clock_s() - started_s;
     return status;
@@ -518,9 +529,9 @@ static cp_status print(const assessment *self, cp_error *error)
     cp_table_destroy(&table);
     const cp_assessment_count *count = &self->count;
     cp_log_info("%zu listed: %zu crashes (%zu of them beyond the record), %zu not counted, %zu do "
-                "not touch, of %zu it is not known",
+                "not touch, of %zu it is not known, %zu left out",
                 count->listed, count->crashes, count->carried, count->filtered, count->no_contact,
-                count->unknown);
+                count->unknown, count->bad);
     return status;
 }
 
@@ -538,6 +549,12 @@ cp_status cmd_assess(int argc, char **argv, cp_error *error)
         status = store_results(&self, error);
     if (status == CP_OK)
         status = print(&self, error);
+    if (status == CP_OK && self.count.bad > 0)
+        status = cp_fail(error, CP_BAD_INPUT,
+                         "%s: %zu of %zu rows could not be assessed (named above); the others are "
+                         "done",
+                         a.collisions_path != NULL ? a.collisions_path : a.configurations_path,
+                         self.count.bad, self.count.listed);
     destroy(&self);
     return status;
 }

@@ -2,6 +2,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "run/background_request.h"
+#include "study/scenario_outputs.h"
 #include "study/study_file.h"
 #include "study/sumo_configuration.h"
 
@@ -15,10 +16,11 @@ typedef struct arguments {
     double duration_s;    /* NAN: the study's, or 900 */
     double step_length_s; /* NAN: 0.1 */
     long seed;            /* < 0: the study's, of a .sumocfg 1 */
+    bool free_outputs;
     cp_format format;
 } arguments;
 
-enum { DURATION = 't', STEP_LENGTH = 'l', SEED = 'S', DB = 'd' };
+enum { DURATION = 't', STEP_LENGTH = 'l', SEED = 'S', DB = 'd', FREE_OUTPUTS = 256 };
 
 static const struct argp_option OPTIONS[] = {
     {"duration", DURATION, "S", 0, "simulated time, s (default: the study's, of a .sumocfg 900)",
@@ -27,6 +29,8 @@ static const struct argp_option OPTIONS[] = {
      "step length of a .sumocfg's run, s (default 0.1); a study has its own", 0},
     {"seed", SEED, "N", 0, "SUMO's seed (default: the study's, of a .sumocfg 1)", 0},
     {"db", DB, "FILE", 0, "of a study: store the result in its database too", 0},
+    {"allow-sumo-outputs", FREE_OUTPUTS, NULL, 0,
+     "let SUMO write and connect wherever the .sumocfg says, not only in its folder", 0},
     {0},
 };
 
@@ -48,6 +52,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case DB:
         a->db_path = argument;
+        return 0;
+    case FREE_OUTPUTS:
+        a->free_outputs = true;
         return 0;
     case ARGP_KEY_ARG:
         if (a->path)
@@ -157,6 +164,9 @@ static cp_status look_at_options(const arguments *a, cp_background_request *requ
             request->duration_s = fmin(request->duration_s, length_s);
         status = cp_sumo_configuration_check(&configuration, request->duration_s, error);
     }
+    const cp_scenario_inputs inputs = {.sumocfg_path = a->path};
+    if (status == CP_OK && !a->free_outputs)
+        status = cp_scenario_outputs_check(&inputs, error);
     if (status == CP_OK)
         cp_sumo_configuration_tell(&configuration);
     cp_sumo_configuration_destroy(&configuration);
@@ -173,8 +183,12 @@ static cp_status run_study(const arguments *a, cp_background_request request, cp
         return status;
     status = cp_study_tell_options(&study, error);
     for (size_t k = 0; k < study.scenario_count && status == CP_OK; k++) {
+        const cp_scenario_inputs inputs = cp_study_scenario_inputs(&study.scenarios[k]);
+        if (!a->free_outputs)
+            status = cp_scenario_outputs_check(&inputs, error);
         request.scenario = study.scenarios[k].name;
-        status = run_one(&request, table, error);
+        if (status == CP_OK)
+            status = run_one(&request, table, error);
     }
     cp_study_destroy(&study);
     return status;
@@ -195,6 +209,7 @@ cp_status cmd_background(int argc, char **argv, cp_error *error)
                                      .step_length_s =
                                          isnan(a.step_length_s) ? 0.1 : a.step_length_s,
                                      .duration_s = duration_s,
+                                     .free_outputs = a.free_outputs,
                                      .db_path = a.db_path};
     cp_table table = {0};
     cp_table_begin(&table, COLUMN, sizeof COLUMN / sizeof *COLUMN);

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/args.h"
 #include "cli/commands.h"
+#include "core/log.h"
+#include "core/safe_text.h"
 #include "run/fleet.h"
 #include "study/controls_text.h"
 #include "study/plan.h"
+#include "study/scenario_outputs.h"
 #include "study/type_mapping.h"
 
 #include <stdbool.h>
@@ -59,7 +62,8 @@ static const struct argp ARGP = {
     .args_doc = "STUDY.yaml",
     .doc = "Show what 'crashpulse run' would do: every scenario with every variant, those of a "
            "sweep included, how many replications of each, and the parameters of every driver "
-           "error and function, defaults included. Runs nothing, changes nothing."
+           "error and function, defaults included, and what files SUMO is asked to write. Runs "
+           "nothing, changes nothing."
            "\v"
            "With --db, what of it is done already and what is new. Exit code 2, and the "
            "difference, when the study file contradicts results in the database.\n\n"
@@ -78,7 +82,8 @@ typedef struct planned {
     size_t dropped;          /* replications in the database that are planned no more */
 } planned;
 
-static cp_status make_plan(const char *path, planned *p, cp_error *error)
+// What a database holds is compared by hashes.
+static cp_status make_plan(const char *path, bool hashed, planned *p, cp_error *error)
 {
     cp_status status = cp_study_load(path, &p->study, error);
     if (status == CP_OK)
@@ -86,7 +91,8 @@ static cp_status make_plan(const char *path, planned *p, cp_error *error)
     if (status == CP_OK)
         status = cp_study_check_types(&p->study, error);
     if (status == CP_OK)
-        status = cp_plan_create(&p->study, p->fleet.rows, p->fleet.count, &p->rows, error);
+        status = (hashed ? cp_plan_create : cp_plan_create_unhashed)(
+            &p->study, p->fleet.rows, p->fleet.count, &p->rows, error);
     return status;
 }
 
@@ -237,6 +243,59 @@ static void print_summary(const planned *p)
                p->study.variant_count - 1);
 }
 
+// ---- what SUMO is asked to write -----------------------------------------------------------
+
+static void print_output(const cp_scenario_output *output)
+{
+    printf("  ");
+    cp_text_print(stdout, output->place, "");
+    printf(": ");
+    cp_text_print(stdout, output->name, "");
+    if (output->why != NULL)
+        printf("  REFUSED: %s", output->why);
+    fputc('\n', stdout);
+}
+
+// As text all of it, in other formats only what 'run' refuses, beside the table.
+static size_t tell_outputs(const cp_study_scenario *scenario, const cp_scenario_outputs *outputs,
+                           cp_format format)
+{
+    size_t refused = 0;
+    if (format == CP_FORMAT_TABLE && outputs->count > 0)
+        printf("\nscenario %s asks SUMO to write\n", scenario->base);
+    for (size_t k = 0; k < outputs->count; k++) {
+        const cp_scenario_output *output = &outputs->output[k];
+        refused += output->why != NULL;
+        if (format == CP_FORMAT_TABLE)
+            print_output(output);
+        else if (output->why != NULL)
+            cp_log_warning("%s: '%s' is refused: %s", output->place, output->name, output->why);
+    }
+    return refused;
+}
+
+static cp_status list_outputs(const cp_study *study, cp_format format, cp_error *error)
+{
+    size_t refused = 0;
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < study->scenario_count; k++) {
+        const cp_study_scenario *scenario = &study->scenarios[k];
+        const cp_scenario_inputs inputs = cp_study_scenario_inputs(scenario);
+        cp_scenario_outputs outputs = {0};
+        if (k > 0 && cp_study_scenarios_start_alike(scenario - 1, scenario))
+            continue;
+        status = cp_scenario_outputs_find(&inputs, &outputs, error);
+        if (status == CP_OK)
+            refused += tell_outputs(scenario, &outputs, format);
+        cp_scenario_outputs_destroy(&outputs);
+    }
+    if (refused > 0)
+        cp_log_warning("'crashpulse run' refuses %zu of what SUMO is asked to write or to connect "
+                       "to, unless it is given --allow-sumo-outputs",
+                       refused);
+    return status;
+}
+
 cp_status cmd_plan(int argc, char **argv, cp_error *error)
 {
     arguments a = {0};
@@ -245,7 +304,7 @@ cp_status cmd_plan(int argc, char **argv, cp_error *error)
     planned p = {0};
     cp_error contradiction = {0};
     cp_status agrees = CP_OK;
-    cp_status status = make_plan(a.study_path, &p, error);
+    cp_status status = make_plan(a.study_path, a.db_path != NULL, &p, error);
     // What the database contradicts is said below the plan.
     if (status == CP_OK && a.db_path != NULL)
         agrees = look_into_database(a.db_path, &p, &contradiction);
@@ -255,6 +314,8 @@ cp_status cmd_plan(int argc, char **argv, cp_error *error)
         status = cp_study_tell_options(&p.study, error);
     if (status == CP_OK && a.format == CP_FORMAT_TABLE)
         print_summary(&p);
+    if (status == CP_OK)
+        status = list_outputs(&p.study, a.format, error);
     release(&p);
     if (status == CP_OK && agrees != CP_OK) {
         *error = contradiction;

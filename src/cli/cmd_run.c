@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { TIME_LIMIT = 256, SHARD, NO_CHECK };
+enum { TIME_LIMIT = 256, SHARD, NO_CHECK, FREE_OUTPUTS };
 
 static const struct argp_option OPTIONS[] = {
     {"db", 'd', "FILE", 0,
@@ -23,6 +23,10 @@ static const struct argp_option OPTIONS[] = {
      "run only share I of N, into a database of its own; 'crashpulse merge' puts them together", 0},
     {"no-check", NO_CHECK, NULL, 0,
      "do not read the whole database for damage before going on with it (seconds a gigabyte)", 0},
+    {"allow-sumo-outputs", FREE_OUTPUTS, NULL, 0,
+     "let SUMO write and connect wherever the scenarios say, not only in the folders of their "
+     ".sumocfg ('crashpulse plan' lists what they ask for)",
+     0},
     {0},
 };
 
@@ -52,6 +56,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case NO_CHECK:
         options->unchecked = true;
+        return 0;
+    case FREE_OUTPUTS:
+        options->free_outputs = true;
         return 0;
     case SHARD:
         parse_shard(argument, options, state);

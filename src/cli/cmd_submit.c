@@ -23,10 +23,11 @@ typedef struct arguments {
     bool dry_run;
     long shards;
     long jobs;           /* worker processes of a task */
+    bool free_outputs;   /* SUMO may write and connect where the scenarios say */
     const char *options; /* further words for sbatch */
 } arguments;
 
-enum { SLURM = 256, SHARDS, DRY_RUN, SBATCH };
+enum { SLURM = 256, SHARDS, DRY_RUN, SBATCH, FREE_OUTPUTS };
 
 static const struct argp_option OPTIONS[] = {
     {"slurm", SLURM, NULL, 0, "submit to Slurm (sbatch); the only queue there is so far", 0},
@@ -35,6 +36,8 @@ static const struct argp_option OPTIONS[] = {
     {"jobs", 'j', "N", 0, "worker processes, and processors, of a task (default 1)", 0},
     {"sbatch", SBATCH, "WORDS", 0, "further words for sbatch: '--partition=long --time=2:00:00'",
      0},
+    {"allow-sumo-outputs", FREE_OUTPUTS, NULL, 0,
+     "let SUMO write and connect wherever the scenarios say, as 'crashpulse run' with it", 0},
     {"dry-run", DRY_RUN, NULL, 0, "write the scripts, submit nothing", 0},
     {0},
 };
@@ -54,6 +57,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case 'j':
         a->jobs = cp_args_integer(state, "--jobs", argument, 1, 1024);
+        return 0;
+    case FREE_OUTPUTS:
+        a->free_outputs = true;
         return 0;
     case SBATCH:
         a->options = argument;
@@ -170,8 +176,9 @@ static cp_status write_scripts(const arguments *a, const paths *p, cp_error *err
              "#SBATCH --ntasks=1 --cpus-per-task=%ld\n"
              "#SBATCH --output='%s/shard_%%a.log'\n"
              "exec '%s' run '%s' --db '%s'/shard_\"$SLURM_ARRAY_TASK_ID\".db \\\n"
-             "    --shard \"$SLURM_ARRAY_TASK_ID\"/%ld --jobs %ld\n",
-             a->shards, a->jobs, p->folder, p->program, p->study, p->folder, a->shards, a->jobs);
+             "    --shard \"$SLURM_ARRAY_TASK_ID\"/%ld --jobs %ld%s\n",
+             a->shards, a->jobs, p->folder, p->program, p->study, p->folder, a->shards, a->jobs,
+             a->free_outputs ? " --allow-sumo-outputs" : "");
     cp_status status = write_script(p->array, text, error);
     snprintf(
         text, sizeof text,

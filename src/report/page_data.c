@@ -223,18 +223,23 @@ static cp_status add_slices(const cp_slice_curves *curves, size_t baseline,
     return CP_OK;
 }
 
-// {"x": km/h, "probability"} of a function of a speed, to draw; null of another.
+// {"x": km/h, "probability", "crash_type": that it is drawn for, null where it does not matter} of
+// a function of a speed, to draw; null of another.
 static json_t *risk_curve_json(const cp_study_risk *risk)
 {
+    static const char DRAWN_TYPE[] = "front-front";
     if (!cp_predictor_is_speed(risk->predictor))
         return json_null();
+    bool has_type = cp_risk_has_crash_type(&risk->function);
     json_t *x = json_array(), *probability = json_array();
     for (double km_h = 0.0; km_h <= RISK_CURVE_END_KM_H; km_h += RISK_CURVE_STEP_KM_H) {
         json_array_append_new(x, json_real(km_h));
-        json_array_append_new(probability, cp_drawn_json(cp_risk_probability(
-                                               &risk->function, cp_m_s_from_km_h(km_h))));
+        json_array_append_new(
+            probability, cp_drawn_json(cp_risk_probability(&risk->function, cp_m_s_from_km_h(km_h),
+                                                           DRAWN_TYPE)));
     }
-    return json_pack("{s:o, s:o}", "x", x, "probability", probability);
+    return json_pack("{s:o, s:o, s:s?}", "x", x, "probability", probability, "crash_type",
+                     has_type ? DRAWN_TYPE : NULL);
 }
 
 static json_t *risks_json(const cp_study_data *data)

@@ -203,7 +203,7 @@ cp_status cp_plot_corridor(cp_plot *p, cp_error *error)
 
 #define RISK_END_KM_H 100
 
-// Functions of a speed, over km/h.
+// Functions of a speed, over km/h; those of the crash type for front-front.
 cp_status cp_plot_risk(cp_plot *p, cp_error *error)
 {
     (void)error;
@@ -212,12 +212,13 @@ cp_status cp_plot_risk(cp_plot *p, cp_error *error)
         if (!cp_predictor_is_speed(risk->predictor))
             continue;
         char title[CP_PLOT_TITLE_SIZE];
-        snprintf(title, sizeof title, "%.200s (%.200s)%s", risk->level, risk->name,
+        snprintf(title, sizeof title, "%.200s (%.200s)%s%s", risk->level, risk->name,
+                 cp_risk_has_crash_type(&risk->function) ? ", front-front" : "",
                  risk->predictor == CP_PREDICTOR_CLOSING_SPEED ? ", of closing speed" : "");
         cp_plot_begin_block(p, k + 1, title);
         for (int km_h = 0; km_h <= RISK_END_KM_H; km_h++, p->drawn++)
             fprintf(p->out, "%d\t%.6g\tNaN\tNaN\n", km_h,
-                    cp_risk_probability(&risk->function, cp_m_s_from_km_h(km_h)));
+                    cp_risk_probability(&risk->function, cp_m_s_from_km_h(km_h), "front-front"));
     }
     return CP_OK;
 }

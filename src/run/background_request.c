@@ -50,6 +50,8 @@ static cp_status run_worker(const cp_background_request *request, const char *re
         arguments[count++] = "--db";
         arguments[count++] = request->db_path;
     }
+    if (request->free_outputs)
+        arguments[count++] = "--allow-sumo-outputs";
     arguments[count] = NULL;
     status = cp_child_start(worker, arguments, &child, error);
     if (status != CP_OK)

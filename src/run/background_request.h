@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Have a worker process find the background of a network (run/background.h). */
@@ -13,6 +14,7 @@ typedef struct cp_background_request {
     const char *scenario;    /* NULL: path is a .sumocfg */
     const uint64_t *seed;    /* of a scenario: NULL: the study's */
     double step_length_s;    /* of a .sumocfg */
+    bool free_outputs;       /* SUMO may write and connect where the scenario says */
     double duration_s;       /* of a scenario: NAN: the study's */
     const char *db_path;     /* of the study: the worker stores the result there too; may be NULL */
     double time_limit_s;     /* it has failed when it takes longer; 0: no limit */

@@ -4,6 +4,7 @@
 #include "core/log.h"
 #include "core/progress.h"
 #include "run/child.h"
+#include "run/confinement.h"
 #include "run/fleet.h"
 #include "run/owner.h"
 #include "run/worker.h"
@@ -11,6 +12,7 @@
 #include "store/claim.h"
 #include "store/query.h"
 #include "study/controls_text.h"
+#include "study/scenario_outputs.h"
 #include "study/type_mapping.h"
 
 #include <errno.h>
@@ -70,22 +72,31 @@ static bool is_ours(const runner *run, size_t place)
     return shards == 0 || place % shards == run->options->shard - 1;
 }
 
-static bool is_ours_by_id(const runner *run, int64_t replication_id)
+static int by_id(const void *one, const void *other)
 {
-    const cp_replication_row *row = cp_plan_find(&run->plan, replication_id);
-    return row != NULL && is_ours(run, (size_t)(row - run->plan.replication));
+    int64_t a = *(const int64_t *)one, b = *(const int64_t *)other;
+    return (a > b) - (a < b);
 }
 
 // Of what waits, keep our share; backgrounds are dealt out in turn too.
-static void keep_ours(runner *run)
+static cp_status keep_ours(runner *run, cp_error *error)
 {
     for (size_t k = 0; k < run->plan.background_count; k++)
         run->background_missing[k] &= is_ours(run, k);
-    size_t kept = 0;
+    int64_t *ours = malloc((run->plan.replication_count + 1) * sizeof *ours);
+    if (ours == NULL)
+        return cp_fail_memory(error, "shard");
+    size_t count = 0, kept = 0;
+    for (size_t k = 0; k < run->plan.replication_count; k++)
+        if (is_ours(run, k))
+            ours[count++] = run->plan.replication[k].id;
+    qsort(ours, count, sizeof *ours, by_id);
     for (size_t k = 0; k < run->waiting_count; k++)
-        if (is_ours_by_id(run, run->waiting[k]))
+        if (bsearch(&run->waiting[k], ours, count, sizeof *ours, by_id) != NULL)
             run->waiting[kept++] = run->waiting[k];
     run->waiting_count = kept;
+    free(ours);
+    return CP_OK;
 }
 
 // ---- preparation ---------------------------------------------------------------------------
@@ -116,17 +127,18 @@ static cp_status load_inputs(runner *run, cp_error *error)
     return status;
 }
 
+// For a worker; NULL, the end of its words: it is confined.
+static const char *outputs_word(const runner *run)
+{
+    return run->options->free_outputs ? "--allow-sumo-outputs" : NULL;
+}
+
 // Let a worker start one scenario: only it can load SUMO.
 static cp_status probe_scenario(runner *run, const cp_study_scenario *scenario, cp_error *error)
 {
-    const char *arguments[] = {"crashpulse-worker",
-                               "--study",
-                               run->options->study_path,
-                               "--probe",
-                               scenario->name,
-                               "--parent",
-                               run->parent,
-                               NULL};
+    const char *arguments[] = {"crashpulse-worker", "--study",         run->options->study_path,
+                               "--probe",           scenario->name,    "--parent",
+                               run->parent,         outputs_word(run), NULL};
     cp_child child;
     cp_child_end end;
     cp_status status = cp_child_start(run->worker_path, arguments, &child, error);
@@ -141,14 +153,29 @@ static cp_status probe_scenario(runner *run, const cp_study_scenario *scenario, 
                    end.reason);
 }
 
+static cp_status check_outputs(const cp_study_scenario *scenario, cp_error *error)
+{
+    const cp_scenario_inputs inputs = cp_study_scenario_inputs(scenario);
+    return cp_scenario_outputs_check(&inputs, error);
+}
+
 // Of the values of a sweep one is enough, unless SUMO is started otherwise for each.
 static cp_status probe_scenarios(runner *run, cp_error *error)
 {
     const cp_study_scenario *scenarios = run->study.scenarios;
+    bool is_free = run->options->free_outputs;
     cp_status status = CP_OK;
-    for (size_t k = 0; status == CP_OK && k < run->study.scenario_count; k++)
-        if (k == 0 || !cp_study_scenarios_start_alike(&scenarios[k - 1], &scenarios[k]))
+    for (size_t k = 0; status == CP_OK && k < run->study.scenario_count; k++) {
+        if (k > 0 && cp_study_scenarios_start_alike(&scenarios[k - 1], &scenarios[k]))
+            continue;
+        if (!is_free)
+            status = check_outputs(&scenarios[k], error);
+        if (status == CP_OK)
             status = probe_scenario(run, &scenarios[k], error);
+    }
+    if (status == CP_OK && !is_free && !cp_confinement_has_folders())
+        cp_log_warning("this system cannot keep workers to folders (Landlock): what SUMO writes is "
+                       "only looked for in its options and files");
     return status;
 }
 
@@ -182,7 +209,7 @@ static cp_status prepare_store(runner *run, cp_error *error)
     if (status == CP_OK)
         status = find_backgrounds(run, error);
     if (status == CP_OK && run->options->shards > 0)
-        keep_ours(run);
+        status = keep_ours(run, error);
     if (status == CP_OK)
         status = cp_query_number(
             run->store, "SELECT count(*) FROM replication WHERE status = 'done'", &done, error);
@@ -280,6 +307,7 @@ static cp_status start_background(runner *run, runner_job *job, cp_error *error)
                                row->configuration_hash,
                                "--parent",
                                run->parent,
+                               outputs_word(run),
                                NULL};
     cp_status status = cp_child_start(run->worker_path, arguments, &job->child, error);
     job->child.said = &run->said;
@@ -306,6 +334,7 @@ static cp_status start_job(runner *run, runner_job *job, cp_error *error)
                                id,
                                "--parent",
                                run->parent,
+                               outputs_word(run),
                                NULL};
     cp_status status = cp_child_start(run->worker_path, arguments, &job->child, error);
     job->child.said = &run->said;

@@ -4,6 +4,7 @@
 #include "core/progress.h"
 #include "crash/crash_simulation.h"
 #include "run/background.h"
+#include "run/confinement.h"
 #include "run/fleet.h"
 #include "run/owner.h"
 #include "run/replication.h"
@@ -14,7 +15,33 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+// The folder that a path names something in; the caller frees. NULL when memory is gone.
+static char *folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash != NULL ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+}
+
+// Before SUMO reads what others wrote. SQLite's own temporary files go where the database is, the
+// only other place that is left.
+static cp_status confine(const cp_study_scenario *scenario, const char *db_path,
+                         const char *result_path, cp_error *error)
+{
+    char *own = folder_of(scenario->sumocfg_path);
+    char *of_db = folder_of(db_path != NULL ? db_path : scenario->sumocfg_path);
+    const char *folders[] = {own, of_db, result_path};
+    cp_status status = CP_OK;
+    if (own == NULL || of_db == NULL || setenv("SQLITE_TMPDIR", of_db, 1) != 0)
+        status = cp_fail_memory(error, scenario->sumocfg_path);
+    else
+        status = cp_confine(folders, result_path != NULL ? 3 : 2, error);
+    free(own);
+    free(of_db);
+    return status;
+}
 
 // Claim with a connection of its own: none stays open while the replication runs.
 static cp_status claim(const char *db_path, const cp_replication_row *replication, int *attempt,
@@ -67,7 +94,7 @@ static cp_status run_claimed(const cp_study *study, const cp_fleet *fleet,
 }
 
 cp_status cp_worker_run(const char *study_path, const char *db_path, int64_t replication_id,
-                        int *elsewhere, cp_error *error)
+                        bool free_outputs, int *elsewhere, cp_error *error)
 {
     cp_study study = {0};
     cp_fleet fleet = {0};
@@ -89,7 +116,10 @@ cp_status cp_worker_run(const char *study_path, const char *db_path, int64_t rep
         status = cp_fail(error, CP_BAD_INPUT, "%s: was changed during the run", study_path);
         goto done;
     }
-    status = claim(db_path, replication, &attempt, error);
+    if (!free_outputs)
+        status = confine(&study.scenarios[replication->scenario], db_path, NULL, error);
+    if (status == CP_OK)
+        status = claim(db_path, replication, &attempt, error);
     *elsewhere = status == CP_OK && attempt == 0;
     if (status == CP_OK && attempt > 0)
         status = run_claimed(&study, &fleet, replication, attempt, db_path, error);
@@ -100,16 +130,20 @@ done:
     return status;
 }
 
-cp_status cp_worker_probe(const char *study_path, const char *scenario, cp_error *error)
+cp_status cp_worker_probe(const char *study_path, const char *scenario, bool free_outputs,
+                          cp_error *error)
 {
     cp_study study = {0};
     cp_status status = cp_study_load(study_path, &study, error);
     if (status != CP_OK)
         return status;
     const cp_study_scenario *found = cp_study_find_scenario(&study, scenario);
-    status = found != NULL
-                 ? cp_replication_probe(&study, found, error)
-                 : cp_fail(error, CP_BAD_INPUT, "%s: has no scenario '%s'", study_path, scenario);
+    if (found == NULL)
+        status = cp_fail(error, CP_BAD_INPUT, "%s: has no scenario '%s'", study_path, scenario);
+    else if (!free_outputs)
+        status = confine(found, NULL, NULL, error);
+    if (status == CP_OK)
+        status = cp_replication_probe(&study, found, error);
     cp_study_destroy(&study);
     return status;
 }
@@ -136,7 +170,11 @@ static cp_status run_background(const cp_background_job *job, const cp_backgroun
     cp_cross_check check = {0};
     cp_store *store = NULL;
     snprintf(rows.configuration_hash, sizeof rows.configuration_hash, "%s", configuration_hash);
-    cp_status status = check_place(job, error);
+    cp_status status = CP_OK;
+    if (!job->free_outputs)
+        status = confine(options->scenario, job->db_path, job->result_path, error);
+    if (status == CP_OK)
+        status = check_place(job, error);
     if (status == CP_OK)
         status = cp_background_run(options, &rows, &check, error);
     if (status == CP_OK && job->db_path != NULL) {

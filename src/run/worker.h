@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* What a worker process does: one replication, one background, or one probe. SUMO allows one
@@ -14,14 +15,19 @@
 /* Descriptor on which it tells the runner what went wrong: the text of the error, nothing else. */
 #define CP_WORKER_REPORT_FD 3
 
+/* Before SUMO is started, every one of the following confines the process (run/confinement.h) to
+ * the folders of the scenario's .sumocfg and of the database; unless free_outputs: whoever started
+ * it lets SUMO write and connect where the scenario says. */
+
 /* Claim, run and commit one replication of the study. *elsewhere tells that it was not to be had;
  * that is no error. The database is closed while the replication runs. */
 CP_MUST_CHECK cp_status cp_worker_run(const char *study_path, const char *db_path,
-                                      int64_t replication_id, int *elsewhere, cp_error *error);
+                                      int64_t replication_id, bool free_outputs, int *elsewhere,
+                                      cp_error *error);
 
 /* Start a scenario of the study and make one step. Errors: CP_BAD_INPUT with SUMO's message. */
 CP_MUST_CHECK cp_status cp_worker_probe(const char *study_path, const char *scenario,
-                                        cp_error *error);
+                                        bool free_outputs, cp_error *error);
 
 /* The background of a network (run/background.h): of a .sumocfg, or of a scenario of a study, with
  * its configuration, options, step length, warm-up and time that crashed cars stay. */
@@ -33,7 +39,8 @@ typedef struct cp_background_job {
     double duration_s;         /* NAN: the study's */
     const char *expected_hash; /* the study's own run must have this configuration; may be NULL */
     const char *db_path;       /* of the study, for the result; NULL: not stored */
-    const char *result_path;   /* for the result as JSON; NULL: nowhere */
+    const char *result_path;   /* for the result as JSON, a file that is there; NULL: nowhere */
+    bool free_outputs;
 } cp_background_job;
 
 /* Run and commit it. The database is closed meanwhile. Errors: CP_BAD_INPUT, also for a scenario

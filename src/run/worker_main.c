@@ -28,6 +28,7 @@ typedef struct worker_arguments {
     const char *seed;
     const char *step_length;
     const char *duration;
+    bool free_outputs;
 } worker_arguments;
 
 static const struct argp_option OPTIONS[] = {
@@ -44,6 +45,7 @@ static const struct argp_option OPTIONS[] = {
     {"step-length", 'l', "S", 0, "and this step length, of a configuration", 0},
     {"duration", 't', "S", 0, "for this long (default: the study's)", 0},
     {"expect", 'e', "HASH", 0, "if the study's run has this configuration", 0},
+    {"allow-sumo-outputs", 'o', NULL, 0, "Let SUMO write and connect where the scenario says", 0},
     {0}};
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
@@ -85,6 +87,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         return 0;
     case 'e':
         arguments->expect = argument;
+        return 0;
+    case 'o':
+        arguments->free_outputs = true;
         return 0;
     case ARGP_KEY_END:
         if (arguments->background != NULL) {
@@ -136,7 +141,8 @@ static cp_status run_background(const worker_arguments *arguments, cp_error *err
         .duration_s = arguments->duration != NULL ? strtod(arguments->duration, NULL) : NAN,
         .expected_hash = arguments->expect,
         .db_path = arguments->db,
-        .result_path = arguments->background[0] != '\0' ? arguments->background : NULL};
+        .result_path = arguments->background[0] != '\0' ? arguments->background : NULL,
+        .free_outputs = arguments->free_outputs};
     return cp_worker_background(&job, error);
 }
 
@@ -168,8 +174,8 @@ int main(int argc, char **argv)
         return finish(run_background(&arguments, &error), 0, &error);
     cp_status status =
         arguments.probe != NULL
-            ? cp_worker_probe(arguments.study, arguments.probe, &error)
+            ? cp_worker_probe(arguments.study, arguments.probe, arguments.free_outputs, &error)
             : cp_worker_run(arguments.study, arguments.db, strtoll(arguments.replication, NULL, 10),
-                            &elsewhere, &error);
+                            arguments.free_outputs, &elsewhere, &error);
     return finish(status, elsewhere, &error);
 }

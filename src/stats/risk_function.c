@@ -67,6 +67,14 @@ static bool is_known(const cp_risk_term *term)
     return strcmp(term->of, CP_RISK_CRASH_TYPE) == 0;
 }
 
+bool cp_risk_has_crash_type(const cp_risk_function *function)
+{
+    for (size_t k = 0; k < function->term_count; k++)
+        if (is_known(&function->term[k]))
+            return true;
+    return false;
+}
+
 cp_status cp_risk_function_add_term(cp_risk_function *function, const cp_risk_term *term,
                                     cp_error *error)
 {

@@ -83,6 +83,9 @@ static inline size_t cp_risk_parameters(const cp_risk_function *function)
     return CP_RISK_COEFFICIENTS_MAX + function->term_count;
 }
 
+/* Whether the risk depends on the crash type. */
+bool cp_risk_has_crash_type(const cp_risk_function *function);
+
 /* Probability at an SI value of the predictor, 0 ... 1; NAN of NAN. Of the class of the crash type,
  * NULL or one without a term: c0 alone. */
 double cp_risk_probability(const cp_risk_function *function, double predictor,

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -45,6 +46,15 @@ char *cp_store_file_name(const char *path)
     return name;
 }
 
+// Whether there is no room where a database lies; SQLite does not always keep the system's word.
+static bool is_disk_full(const char *path, int why)
+{
+    struct statvfs disk;
+    if (why != 0)
+        return why == ENOSPC || why == EDQUOT;
+    return statvfs(path, &disk) == 0 && disk.f_blocks > 0 && disk.f_bavail == 0;
+}
+
 cp_status cp_store_fail(cp_store *store, cp_error *error, const char *what)
 {
     int code = sqlite3_errcode(store->handle) & 0xff;
@@ -56,6 +66,11 @@ cp_status cp_store_fail(cp_store *store, cp_error *error, const char *what)
     // SQLite says that input or output failed; the system, why: no space, no rights.
     bool outside = code == SQLITE_IOERR || code == SQLITE_FULL || code == SQLITE_CANTOPEN;
     int why = outside ? sqlite3_system_errno(store->handle) : 0;
+    if (code == SQLITE_FULL || (outside && is_disk_full(store->path, why)))
+        return cp_fail(error, status,
+                       "%s: %s: the disk is full (SQLite keeps logs beside a database, for reading "
+                       "too)",
+                       store->path, what);
     return cp_fail(error, status, "%s: %s: %s%s%s", store->path, what,
                    sqlite3_errmsg(store->handle), why != 0 ? ": " : "",
                    why != 0 ? strerror(why) : "");

@@ -4,7 +4,7 @@
 #include "core/file.h"
 #include "core/xml_file.h"
 
-#include <stdbool.h>
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -42,20 +42,88 @@ static cp_status append(char ***list, size_t *count, const char *text, cp_error 
 
 typedef struct search {
     cp_input_file *file;
-    const cp_input_wanted *wanted;
+    const cp_input_search *wanted;
 } search;
+
+static cp_status add_output(cp_input_file *file, size_t line, const char *element,
+                            const char *attribute, const char *name, cp_error *error)
+{
+    cp_input_output *more = realloc(file->outputs, (file->output_count + 1) * sizeof *more);
+    if (more == NULL)
+        return cp_fail_memory(error, name);
+    file->outputs = more;
+    char *what = malloc(strlen(element) + strlen(attribute) + sizeof "< >");
+    if (what != NULL && element[0] != '\0')
+        strcat(strcat(strcat(strcat(strcpy(what, "<"), element), " "), attribute), ">");
+    else if (what != NULL)
+        strcpy(what, attribute);
+    more[file->output_count] = (cp_input_output){.line = line, .what = what, .name = strdup(name)};
+    if (what == NULL || more[file->output_count++].name == NULL) {
+        if (what == NULL)
+            free(more[file->output_count].name);
+        return cp_fail_memory(error, name);
+    }
+    return CP_OK;
+}
+
+// Whether a text ends in a word: "x.file" in "file", "profile" not.
+static bool ends_in(const char *text, const char *word)
+{
+    size_t length = strlen(text), of_word = strlen(word);
+    if (length < of_word || strcmp(text + length - of_word, word) != 0)
+        return false;
+    return length == of_word || !isalpha((unsigned char)text[length - of_word - 1]);
+}
+
+// Elements whose file is read.
+static bool reads_its_file(const char *element)
+{
+    static const char *const NAME[] = {"variableSpeedSign", "rerouter", "calibrator"};
+    for (size_t k = 0; k < sizeof NAME / sizeof *NAME; k++)
+        if (strcmp(element, NAME[k]) == 0)
+            return true;
+    return false;
+}
+
+// What of an element makes SUMO write.
+static cp_status look_for_outputs(cp_input_file *file, const cp_xml_element *element,
+                                  cp_error *error)
+{
+    static const char *const ATTRIBUTE[] = {"file", "output", "dest"};
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < sizeof ATTRIBUTE / sizeof *ATTRIBUTE; k++) {
+        const char *name = cp_xml_attribute(element, ATTRIBUTE[k]);
+        bool is_read = k == 0 && reads_its_file(element->name);
+        if (name != NULL && name[0] != '\0' && !is_read)
+            status = add_output(file, element->line, element->name, ATTRIBUTE[k], name, error);
+    }
+    const char *key = cp_xml_attribute(element, "key");
+    const char *value = cp_xml_attribute(element, "value");
+    if (status == CP_OK && key != NULL && value != NULL && value[0] != '\0' &&
+        (ends_in(key, "file") || ends_in(key, "output")))
+        status = add_output(file, element->line, "", key, value, error);
+    // A kind of traffic light that writes a log of its own where SUMO was started.
+    const char *type = cp_xml_attribute(element, "type");
+    if (status == CP_OK && strcmp(element->name, "tlLogic") == 0 && type != NULL &&
+        strcmp(type, "swarm") == 0)
+        status = add_output(file, element->line, element->name, "type", "swarm", error);
+    return status;
+}
 
 static cp_status look_at_element(void *context, const cp_xml_element *element, cp_error *error)
 {
-    static const char *const WITH_FILE[] = {"variableSpeedSign", "rerouter", "calibrator"};
     const search *s = context;
     cp_input_file *file = s->file;
     const char *included = NULL;
+    cp_status status = CP_OK;
+    if (s->wanted->outputs)
+        status = look_for_outputs(file, element, error);
+    if (status != CP_OK)
+        return status;
     if (strcmp(element->name, "include") == 0)
         included = cp_xml_attribute(element, "href");
-    for (size_t k = 0; k < sizeof WITH_FILE / sizeof *WITH_FILE; k++)
-        if (strcmp(element->name, WITH_FILE[k]) == 0)
-            included = cp_xml_attribute(element, "file");
+    else if (reads_its_file(element->name))
+        included = cp_xml_attribute(element, "file");
     if (included != NULL && included[0] != '\0')
         return append(&file->includes, &file->include_count, included, error);
 
@@ -74,19 +142,28 @@ static cp_status look_at_element(void *context, const cp_xml_element *element, c
 static cp_status look_at_entity(void *context, const char *name, cp_error *error)
 {
     const search *s = context;
+    if (s->wanted->outputs && strchr(name, ':') != NULL) {
+        cp_status status = add_output(s->file, 0, "", "document type or entity", name, error);
+        if (status != CP_OK)
+            return status;
+    }
     return append(&s->file->includes, &s->file->include_count, name, error);
 }
 
 // Whether there is anything to find: a network of a whole city need not be parsed for that. Text of
 // two bytes a character is, it cannot be searched.
-static bool is_worth_parsing(const char *content, size_t size, const cp_input_wanted *wanted)
+static bool is_worth_parsing(const char *content, size_t size, const cp_input_search *wanted)
 {
     static const char *const WORD[] = {"<include", "variableSpeedSign", "<rerouter", "<calibrator",
                                        "<!"};
+    static const char *const OUTPUT_WORD[] = {"file", "output", "dest", "swarm", "&#"};
     if (memchr(content, '\0', size) != NULL)
         return true;
     for (size_t k = 0; k < sizeof WORD / sizeof *WORD; k++)
         if (strstr(content, WORD[k]) != NULL)
+            return true;
+    for (size_t k = 0; wanted->outputs && k < sizeof OUTPUT_WORD / sizeof *OUTPUT_WORD; k++)
+        if (strstr(content, OUTPUT_WORD[k]) != NULL)
             return true;
     return (wanted->key != NULL && strstr(content, wanted->key) != NULL) ||
            (wanted->types && strstr(content, "<vType") != NULL);
@@ -143,7 +220,7 @@ static bool is_compressed(const char *content, size_t size)
     return size > 2 && (unsigned char)content[0] == 0x1f && (unsigned char)content[1] == 0x8b;
 }
 
-cp_status cp_input_file_read(const char *path, const cp_input_wanted *wanted, cp_input_file *file,
+cp_status cp_input_file_read(const char *path, const cp_input_search *wanted, cp_input_file *file,
                              cp_error *error)
 {
     char *content = NULL, *plain = NULL;
@@ -181,7 +258,12 @@ void cp_input_file_destroy(cp_input_file *file)
         free(file->values[k]);
     for (size_t k = 0; k < file->type_count; k++)
         free(file->types[k]);
+    for (size_t k = 0; k < file->output_count; k++) {
+        free(file->outputs[k].what);
+        free(file->outputs[k].name);
+    }
     free(file->types);
+    free(file->outputs);
     free(file->includes);
     free(file->values);
     *file = (cp_input_file){0};

@@ -4,7 +4,10 @@
 #include "core/rng.h"
 #include "study/scenario_files.h"
 
+#include <inttypes.h>
 #include <jansson.h>
+#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -257,9 +260,9 @@ static json_t *counterfactual_json(const cp_study *study, const cp_plan_rows *ro
     return section;
 }
 
-// SHA-256 over all that the outcome of a replication depends on, as JSON.
-static cp_status hash_configuration(const cp_study *study, const cp_plan_rows *rows,
-                                    cp_replication_row *replication, cp_error *error)
+// All that the outcome of a replication depends on, as JSON; NULL when memory is gone.
+static char *configuration_text(const cp_study *study, const cp_plan_rows *rows,
+                                const cp_replication_row *replication)
 {
     const cp_scenario_row *scenario = &rows->scenario[replication->scenario];
     json_t *hashes = json_array();
@@ -278,17 +281,58 @@ static cp_status hash_configuration(const cp_study *study, const cp_plan_rows *r
         json_object_set_new(configuration, "stay_s", json_real(study->stay_s));
     if (study->history_s > 0.0)
         json_object_set_new(configuration, "history_s", json_real(study->history_s));
-    char *text = take_text(configuration);
-    if (text == NULL)
+    return take_text(configuration);
+}
+
+/* The same for every replication of a scenario and variant: they differ by their seed only, so that
+ * the text is made once and a seed put in for each. */
+typedef struct configuration_form {
+    char *text;           /* with the seed 0; NULL: not made yet */
+    size_t before, after; /* length of what stands in front of the seed; place of what follows */
+    char *filled;         /* room for it with the longest seed */
+} configuration_form;
+
+static cp_status make_form(const cp_study *study, const cp_plan_rows *rows,
+                           const cp_replication_row *replication, configuration_form *form,
+                           cp_error *error)
+{
+    static const char SEED[] = ",\"seed\":";
+    cp_replication_row any = *replication;
+    any.seed = 0;
+    form->text = configuration_text(study, rows, &any);
+    form->filled = form->text != NULL ? malloc(strlen(form->text) + 24) : NULL;
+    if (form->filled == NULL)
         return cp_fail_memory(error, "configuration");
-    cp_hash_bytes(text, strlen(text), replication->configuration_hash);
-    free(text);
+    // It is the second key, behind a number: the first place that looks like it.
+    form->before = (size_t)(strstr(form->text, SEED) - form->text) + strlen(SEED);
+    form->after = form->before + 1;
+    memcpy(form->filled, form->text, form->before);
     return CP_OK;
 }
 
-// only: hash this one; NULL: all of them.
-static cp_status fill_replications(const cp_study *study, const int64_t *only, cp_plan_rows *rows,
-                                   cp_error *error)
+static cp_status hash_configuration(const cp_study *study, const cp_plan_rows *rows,
+                                    configuration_form *form, cp_replication_row *replication,
+                                    cp_error *error)
+{
+    if (form->text == NULL) {
+        cp_status status = make_form(study, rows, replication, form, error);
+        if (status != CP_OK)
+            return status;
+    }
+    int digits = sprintf(form->filled + form->before, "%" PRIu64, replication->seed);
+    strcpy(form->filled + form->before + digits, form->text + form->after);
+    cp_hash_bytes(form->filled, strlen(form->filled), replication->configuration_hash);
+    return CP_OK;
+}
+
+// Which replications are hashed, which is most of the work.
+typedef struct hashed {
+    bool all;
+    const int64_t *only; /* unless all: this one; NULL: none */
+} hashed;
+
+static cp_status fill_rows(const cp_study *study, hashed which, configuration_form *forms,
+                           cp_plan_rows *rows, cp_error *error)
 {
     size_t total = study->scenario_count * study->variant_count * study->replications;
     rows->replication = calloc(total, sizeof *rows->replication);
@@ -305,13 +349,31 @@ static cp_status fill_replications(const cp_study *study, const int64_t *only, c
         row->id = cp_replication_row_id(study->scenarios[row->scenario].name,
                                         study->variants[row->variant].name, "", row->seed);
         cp_status status = CP_OK;
-        if (only == NULL || *only == row->id)
-            status = hash_configuration(study, rows, row, error);
+        if (which.all || (which.only != NULL && *which.only == row->id))
+            status = hash_configuration(study, rows,
+                                        &forms[row->scenario * study->variant_count + row->variant],
+                                        row, error);
         if (status != CP_OK)
             return status;
         rows->replication_count++;
     }
     return CP_OK;
+}
+
+static cp_status fill_replications(const cp_study *study, hashed which, cp_plan_rows *rows,
+                                   cp_error *error)
+{
+    size_t count = study->scenario_count * study->variant_count;
+    configuration_form *forms = calloc(count, sizeof *forms);
+    if (forms == NULL)
+        return cp_fail_memory(error, "replications");
+    cp_status status = fill_rows(study, which, forms, rows, error);
+    for (size_t k = 0; k < count; k++) {
+        free(forms[k].text);
+        free(forms[k].filled);
+    }
+    free(forms);
+    return status;
 }
 
 // ---- backgrounds ---------------------------------------------------------------------------
@@ -386,8 +448,7 @@ cp_status cp_plan_background(const cp_study *study, size_t scenario, size_t numb
 }
 
 static cp_status create(const cp_study *study, const cp_vehicle_model_row *models,
-                        size_t model_count, const int64_t *only, cp_plan_rows *rows,
-                        cp_error *error)
+                        size_t model_count, hashed which, cp_plan_rows *rows, cp_error *error)
 {
     *rows = (cp_plan_rows){0};
     cp_status status = fill_study(study, models, &rows->study, error);
@@ -400,7 +461,7 @@ static cp_status create(const cp_study *study, const cp_vehicle_model_row *model
     if (status == CP_OK)
         status = fill_vehicle_models(study, models, model_count, rows, error);
     if (status == CP_OK)
-        status = fill_replications(study, only, rows, error);
+        status = fill_replications(study, which, rows, error);
     if (status == CP_OK)
         status = fill_backgrounds(study, rows, error);
     if (status != CP_OK)
@@ -411,14 +472,20 @@ static cp_status create(const cp_study *study, const cp_vehicle_model_row *model
 cp_status cp_plan_create(const cp_study *study, const cp_vehicle_model_row *models,
                          size_t model_count, cp_plan_rows *rows, cp_error *error)
 {
-    return create(study, models, model_count, NULL, rows, error);
+    return create(study, models, model_count, (hashed){.all = true}, rows, error);
 }
 
 cp_status cp_plan_create_for(const cp_study *study, const cp_vehicle_model_row *models,
                              size_t model_count, int64_t replication_id, cp_plan_rows *rows,
                              cp_error *error)
 {
-    return create(study, models, model_count, &replication_id, rows, error);
+    return create(study, models, model_count, (hashed){.only = &replication_id}, rows, error);
+}
+
+cp_status cp_plan_create_unhashed(const cp_study *study, const cp_vehicle_model_row *models,
+                                  size_t model_count, cp_plan_rows *rows, cp_error *error)
+{
+    return create(study, models, model_count, (hashed){0}, rows, error);
 }
 
 void cp_plan_destroy(cp_plan_rows *rows)

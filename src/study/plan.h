@@ -20,6 +20,11 @@ CP_MUST_CHECK cp_status cp_plan_create_for(const cp_study *study,
                                            const cp_vehicle_model_row *models, size_t model_count,
                                            int64_t replication_id, cp_plan_rows *rows,
                                            cp_error *error);
+/* And for who only lists them: none has a configuration hash. */
+CP_MUST_CHECK cp_status cp_plan_create_unhashed(const cp_study *study,
+                                                const cp_vehicle_model_row *models,
+                                                size_t model_count, cp_plan_rows *rows,
+                                                cp_error *error);
 void cp_plan_destroy(cp_plan_rows *rows);
 
 /* The background run of one scenario with the traffic of the baseline's replication `number`,

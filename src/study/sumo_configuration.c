@@ -101,9 +101,19 @@ static cp_status end_element(void *context, const char *name, cp_error *error)
     return status;
 }
 
+// Options may stand in no other file: nobody would look at them.
+static cp_status refuse_outside(void *context, const char *name, cp_error *error)
+{
+    const reading *r = context;
+    return cp_fail(error, CP_BAD_INPUT,
+                   "%s: must not take its text from other files (document type, entities), found "
+                   "'%s'",
+                   r->configuration->path, name);
+}
+
 static cp_status read_file(cp_sumo_configuration *configuration, cp_error *error)
 {
-    static const cp_xml_visitor VISITOR = {begin_element, take_text, end_element, NULL};
+    static const cp_xml_visitor VISITOR = {begin_element, take_text, end_element, refuse_outside};
     reading r = {.configuration = configuration};
     cp_status status = cp_xml_read_all(configuration->path, NULL, &VISITOR, &r, error);
     free(r.text);
@@ -117,7 +127,9 @@ static cp_status read_words(cp_sumo_configuration *configuration, char *const *w
     for (size_t k = 0; k < count;) {
         const char *name = words[k] + strspn(words[k], "-");
         size_t length = strcspn(name, "=");
-        bool is_option = words[k][0] == '-' && length > 0;
+        // -v is an option, -vl two of them.
+        bool is_short = words[k][0] == '-' && words[k][1] != '-';
+        bool is_option = words[k][0] == '-' && length > 0 && (!is_short || length == 1);
         const char *value = name[length] == '=' ? name + length + 1 : NULL;
         bool takes_next =
             value == NULL && k + 1 < count &&
@@ -128,7 +140,7 @@ static cp_status read_words(cp_sumo_configuration *configuration, char *const *w
             return cp_fail(
                 error, CP_BAD_INPUT,
                 "sumo_options: must be options of SUMO with their values, found '%s' where "
-                "an option begins",
+                "an option begins (--name or -n)",
                 words[k]);
         cp_sumo_setting *setting = add(configuration, name, length, value != NULL ? value : "true");
         if (setting == NULL)
@@ -201,9 +213,8 @@ double cp_sumo_configuration_length_s(const cp_sumo_configuration *configuration
     return end_s < 0.0 ? INFINITY : end_s - begin_s;
 }
 
-// "x.sumocfg:7: option" or "sumo_options: option".
-static void name_place(const cp_sumo_configuration *configuration, const cp_sumo_setting *setting,
-                       char *place, size_t size)
+void cp_sumo_setting_place(const cp_sumo_configuration *configuration,
+                           const cp_sumo_setting *setting, char *place, size_t size)
 {
     if (setting->line > 0)
         snprintf(place, size, "%s:%zu: %s", configuration->path, setting->line, setting->name);
@@ -219,7 +230,7 @@ static cp_status check_setting(const cp_sumo_configuration *configuration,
         setting->option != NULL ? cp_sumo_rule_find(setting->option->name) : NULL;
     if (rule == NULL)
         return CP_OK;
-    name_place(configuration, setting, place, sizeof place);
+    cp_sumo_setting_place(configuration, setting, place, sizeof place);
     bool is_off = setting->option->kind == CP_SUMO_SWITCH && !cp_sumo_value_is_true(setting->value);
     if (rule->treatment == CP_SUMO_REFUSED && !is_off)
         return cp_fail(error, CP_BAD_INPUT, "%s must not be set, found '%s': %s", place,
@@ -250,7 +261,7 @@ void cp_sumo_configuration_tell(const cp_sumo_configuration *configuration)
     for (size_t k = 0; k < configuration->count; k++) {
         char place[1024];
         const cp_sumo_setting *setting = &configuration->setting[k];
-        name_place(configuration, setting, place, sizeof place);
+        cp_sumo_setting_place(configuration, setting, place, sizeof place);
         if (setting->option == NULL) {
             cp_log_warning(
                 "%s is no option of SUMO 1.15 that crashpulse knows; it is left as it is", place);

@@ -26,7 +26,8 @@ typedef struct cp_sumo_configuration {
 } cp_sumo_configuration;
 
 /* Zero-initialise; the caller destroys, after a failure too. Errors: CP_BAD_INPUT for a .sumocfg
- * that cannot be read or is no XML, and for words that are no option with a value; CP_NO_MEMORY. */
+ * that cannot be read, is no XML or takes text from other files, and for words that are no option
+ * with a value; CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_sumo_configuration_read(const char *sumocfg_path, char *const *words,
                                                    size_t word_count,
                                                    cp_sumo_configuration *configuration,
@@ -37,6 +38,10 @@ void cp_sumo_configuration_destroy(cp_sumo_configuration *configuration);
  * .sumocfg; NULL without one. */
 const cp_sumo_setting *cp_sumo_configuration_find(const cp_sumo_configuration *configuration,
                                                   const char *option);
+
+/* Where a setting stands, for messages: "x.sumocfg:7: option" or "sumo_options: option". */
+void cp_sumo_setting_place(const cp_sumo_configuration *configuration,
+                           const cp_sumo_setting *setting, char *place, size_t size);
 
 /* Whether a scenario may run for duration_s (traffic/sumo_options.h). Error: CP_BAD_INPUT with the
  * option and why not. */

@@ -264,7 +264,7 @@
     X("device.ssm.trajectories", "", SWITCH)                                                       \
     X("device.ssm.range", "", OTHER)                                                               \
     X("device.ssm.extratime", "", OTHER)                                                           \
-    X("device.ssm.file", "", OTHER)                                                                \
+    X("device.ssm.file", "", OUTPUT)                                                               \
     X("device.ssm.geo", "", SWITCH)                                                                \
     X("device.ssm.write-positions", "", SWITCH)                                                    \
     X("device.ssm.write-lane-positions", "", SWITCH)                                               \
@@ -289,7 +289,7 @@
     X("device.toc.ogMaxDecel", "", OTHER)                                                          \
     X("device.toc.ogChangeRate", "", OTHER)                                                        \
     X("device.toc.useColorScheme", "", SWITCH)                                                     \
-    X("device.toc.file", "", OTHER)                                                                \
+    X("device.toc.file", "", OUTPUT)                                                               \
     X("device.driverstate.probability", "", OTHER)                                                 \
     X("device.driverstate.explicit", "device.driverstate.knownveh", OTHER)                         \
     X("device.driverstate.deterministic", "", SWITCH)                                              \

@@ -237,3 +237,30 @@ with tempfile.TemporaryDirectory() as name:
     message = run(crashpulse, "assess", "--configurations", folder / "poses.csv", "--vehicle",
                   vehicles / "mid_size.yaml", expect=2).stderr
     assert "poses.csv:2: the two must meet within" in message, message
+
+    # One bad row among good ones is named and left out, the others are done, the exit code says so;
+    # --strict ends there.
+    head = "x_a_m,y_a_m,heading_a_deg,speed_a_km_h,x_b_m,y_b_m,heading_b_deg,speed_b_km_h\n"
+    good = "0,0,90,50,0.3,14,270,40\n"
+    (folder / "poses.csv").write_text(head + 50 * good + "0,0,0,50,0,14,0,40\n0,0,0,50,1,0,0,40\n" + 50 * good)
+    words = ["--configurations", folder / "poses.csv", "--vehicle", "mid_size", "--format", "csv"]
+    some = run(crashpulse, "assess", *words, "--db", folder / "some.db", expect=2)
+    assert "poses.csv:52: the two must meet within" in some.stderr, some.stderr
+    assert "poses.csv:53: x_b_m, y_b_m must leave the cars apart" in some.stderr, some.stderr
+    assert "2 of 102 rows could not be assessed" in some.stderr, some.stderr
+    assert len(some.stdout.splitlines()) == 101 and len(crashes(folder / "some.db")) == 100
+    strict = run(crashpulse, "assess", *words, "--strict", "--db", folder / "strict.db", expect=2)
+    assert "poses.csv:52" in strict.stderr and not strict.stdout, strict
+    assert "poses.csv:53" not in strict.stderr and not (folder / "strict.db").exists(), strict
+
+    # Likewise a collision one of whose vehicles is not in the record.
+    listed = (folder / "ours.coll.xml").read_text()
+    name = re.search(r'collider="([^"]*)"', listed).group(1)
+    (folder / "missing.coll.xml").write_text(listed.replace(f'collider="{name}"', 'collider="nobody"'))
+    words = [folder / "missing.coll.xml" if word == folder / "ours.coll.xml" else word for word in assess]
+    assert words != assess
+    some = run(crashpulse, "assess", *words, "--format", "csv", expect=2)
+    assert "'nobody' is not in the record" in some.stderr and "could not be assessed" in some.stderr, some
+    assert len(some.stdout.splitlines()) > 5, some
+    strict = run(crashpulse, "assess", *words, "--strict", expect=2)
+    assert "'nobody' is not in the record" in strict.stderr and not strict.stdout, strict

@@ -201,7 +201,7 @@ static void risk_is_the_function(void **state)
     char *data = data_of(f, CP_PLOT_RISK, CP_SCOPE_ALL), wanted[128];
     for (size_t k = 0; k < f->data.risk_count; k++) {
         snprintf(wanted, sizeof wanted, "\n50\t%.6g\tNaN",
-                 cp_risk_probability(&f->data.risk[k].function, 50.0 / 3.6));
+                 cp_risk_probability(&f->data.risk[k].function, 50.0 / 3.6, "front-front"));
         assert_non_null(strstr(data, wanted));
     }
     free(data);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "core/memory_stream.h"
 #include "report/answer.h"
 
 #include <math.h>
@@ -355,7 +356,7 @@ cp_status cp_comparison_answer(const cp_study_data *data, const cp_comparison *c
 {
     *answer = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(answer, &size);
+    FILE *out = cp_memory_stream(answer, &size);
     if (!out)
         return cp_fail_memory(error, "the answer of a comparison");
 

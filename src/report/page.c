@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "core/memory_stream.h"
 #include "report/page.h"
 
 #include <stdio.h>
@@ -38,7 +39,7 @@ cp_status cp_page_fill(const char *template_text, const cp_page_part *part, size
                        char **page, size_t *size, cp_error *error)
 {
     *page = NULL;
-    FILE *out = open_memstream(page, size);
+    FILE *out = cp_memory_stream(page, size);
     if (!out)
         return cp_fail_memory(error, "a page");
     cp_status status = fill(out, template_text, part, part_count, error);

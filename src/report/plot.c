@@ -2,6 +2,7 @@
 #include "report/plot.h"
 
 #include "core/file.h"
+#include "core/memory_stream.h"
 #include "core/scratch.h"
 #include "core/units.h"
 #include "report/gallery.h"
@@ -430,9 +431,9 @@ static cp_status make(plot *p, cp_plot_kind kind, char **data, char **numbers, c
 {
     size_t data_size = 0, variants_size = 0, bars_size = 0;
     char *variants = NULL, *bars = NULL;
-    p->out = open_memstream(data, &data_size);
-    p->variants = open_memstream(&variants, &variants_size);
-    p->bars = open_memstream(&bars, &bars_size);
+    p->out = cp_memory_stream(data, &data_size);
+    p->variants = cp_memory_stream(&variants, &variants_size);
+    p->bars = cp_memory_stream(&bars, &bars_size);
     cp_status status = p->out && p->variants && p->bars ? write_streams(p, kind, error)
                                                         : cp_fail_memory(error, "a figure");
     int bad = p->out && fclose(p->out) != 0;

@@ -30,6 +30,9 @@ const fuzz_target *fuzz_find(const char *name);
  * its files, collisions.xml. */
 void fuzz_begin(void);
 
+/* One input. */
+void fuzz_run(const fuzz_target *target, const uint8_t *data, size_t size);
+
 /* What the targets call. */
 void fuzz_write(const char *name, const void *data, size_t size);
 /* A failure must be bad input, or want of memory, told in words. */

@@ -185,7 +185,7 @@ static void run_exactly(const fuzz_target *target, const void *data, size_t size
     uint8_t *copy = malloc(size > 0 ? size : 1);
     fuzz_must(copy != NULL, "no memory");
     memcpy(copy, data, size);
-    target->run(copy, size);
+    fuzz_run(target, copy, size);
     free(copy);
 }
 

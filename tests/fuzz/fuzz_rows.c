@@ -99,8 +99,12 @@ static void simulate(const cp_stored_crash *crash)
     cp_crash_result result;
     cp_stored_match match;
     cp_error error = {0};
+    // The beginning says most of it, in a tenth of the time.
+    cp_crash_options options = crash->options;
+    options.duration_s = fmin(options.duration_s, 0.03);
+    options.longest_duration_s = fmin(options.longest_duration_s, 0.03);
     cp_status status = cp_crash_simulate(&crash->model[0], &crash->model[1], &crash->configuration,
-                                         &crash->options, &result, &error);
+                                         &options, &result, &error);
     fuzz_must(status == CP_OK || (status == CP_CRASH_FAILED && error.text[0] != '\0'), error.text);
     if (status == CP_OK) {
         for (int v = 0; v < result.vehicle_count; v++)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "core/memory_stream.h"
 #include "report/answer.h"
+
+#include "core/memory_stream.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,6 +2,7 @@
 #include "calibrate/descent_journal.h"
 
 #include "core/file.h"
+#include "core/memory_stream.h"
 
 #include <float.h>
 #include <stdio.h>
@@ -91,7 +92,7 @@ static cp_status write_file(const cp_descent_journal *journal, cp_error *error)
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
+    FILE *file = cp_memory_stream(&text, &size);
     if (file == NULL)
         return cp_fail_memory(error, journal->path);
     for (size_t descent = 0; descent < journal->count; descent++) {

@@ -2,6 +2,7 @@
 #include "calibrate/calibration.h"
 #include "calibrate/fit_vehicle.h"
 #include "core/file.h"
+#include "core/memory_stream.h"
 #include "core/safe_text.h"
 #include "core/units.h"
 
@@ -332,7 +333,7 @@ static cp_status write_text(const char *path,
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
+    FILE *stream = cp_memory_stream(&text, &size);
     if (stream == NULL)
         return cp_fail_memory(error, path);
     writer(stream, fit, calibration);

@@ -2,6 +2,7 @@
 #include "cli/crash_output.h"
 
 #include "core/file.h"
+#include "core/memory_stream.h"
 #include "core/safe_text.h"
 #include "core/units.h"
 #include "crash/validity.h"
@@ -232,7 +233,7 @@ cp_status cp_crash_write_pulse(const cp_crash_run *run, bool raw, const char *pa
 {
     char *content = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(&content, &size);
+    FILE *out = cp_memory_stream(&content, &size);
     if (!out)
         return cp_fail_memory(error, "a pulse");
     cp_status status = write_rows(run, raw, out, error);

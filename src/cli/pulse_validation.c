@@ -2,6 +2,7 @@
 #include "cli/pulse_validation.h"
 
 #include "core/file.h"
+#include "core/memory_stream.h"
 #include "core/units.h"
 
 #include <math.h>
@@ -152,7 +153,7 @@ static cp_status write_curves(const cp_reference_pulse *reference, const cp_cras
     cp_status status = cp_pulse_filtered(&result->pulse[0], 60.0, &filtered, error);
     if (status != CP_OK)
         return status;
-    FILE *stream = open_memstream(&text, &size);
+    FILE *stream = cp_memory_stream(&text, &size);
     if (stream != NULL) {
         write_rows(reference, &filtered, stream);
         if (fclose(stream) != 0)

@@ -81,7 +81,7 @@ cp_status cp_file_read(const char *path, char **content, size_t *size, cp_error 
     bool large = fstat(fileno(file), &entry) == 0 && (size_t)entry.st_size > SIZE_MAX_BYTES;
     size_t used = 0;
     char *buffer = large ? NULL : read_all(file, &used);
-    int failed = ferror(file);
+    int failed = ferror(file), why = errno;
     fclose(file);
     if (large || used > SIZE_MAX_BYTES) {
         free(buffer);
@@ -91,7 +91,7 @@ cp_status cp_file_read(const char *path, char **content, size_t *size, cp_error 
         return cp_fail_memory(error, path);
     if (failed) {
         free(buffer);
-        return cp_fail(error, CP_BAD_INPUT, "%s: cannot be read", path);
+        return cp_fail(error, CP_IO_FAILED, "%s: cannot be read: %s", path, strerror(why));
     }
     buffer[used] = '\0';
     *content = buffer;

@@ -93,6 +93,8 @@ static cp_status parse(reader *self, gzFile file, cp_error *error)
         int size = gzread(file, buffer, CHUNK);
         int broken = 0;
         const char *reason = gzerror(file, &broken);
+        if (broken == Z_MEM_ERROR)
+            return cp_fail_memory(error, self->path);
         // A compressed file cut off in the middle ends without its checksum (Z_BUF_ERROR).
         if (size < 0 || broken < 0)
             return cp_fail(error, CP_BAD_INPUT, "%s: cannot be read: %s", self->path,

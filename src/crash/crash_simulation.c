@@ -405,6 +405,22 @@ static void sum_energy(crash_run *run)
     energy->highest_mechanical_j = fmax(energy->highest_mechanical_j, middle_j);
 }
 
+// A crash only takes energy. Where parameters, each within its bounds, are together too stiff for
+// the time step, motion grows instead: nothing of it is a result.
+static cp_status check_energy(const crash_run *run, double dt, cp_error *error)
+{
+    const double share_1 = 1.01, rounding_j = 10.0; // 0.1 m/s of a car
+    const cp_crash_energy *energy = &run->result->energy;
+    if (energy->highest_mechanical_j <= share_1 * energy->start_j + rounding_j)
+        return CP_OK;
+    return cp_fail(error, CP_CRASH_FAILED,
+                   "the crash simulation gained energy: %.3g times that at first contact at %g s; "
+                   "parameters of %s%s%s are together too stiff for the time step of %g s",
+                   energy->highest_mechanical_j / energy->start_j, dt * (double)run->sample,
+                   run->car[0].model->name, run->car_count == 2 ? " or " : "",
+                   run->car_count == 2 ? run->car[1].model->name : "", dt);
+}
+
 static cp_crash_momentum momentum_now(const crash_run *run)
 {
     cp_crash_momentum momentum = {{0.0, 0.0}, 0.0};
@@ -455,6 +471,9 @@ static cp_status advance(crash_run *run, double dt, double *pressed_n, cp_error 
         cp_car_apply_forces(&run->car[c]);
     cp_encounter_apply_forces(&run->encounter, dt);
     watch_energy(run);
+    cp_status status = check_energy(run, dt, error);
+    if (status != CP_OK)
+        return status;
     if (!dWorldStep(run->world, dt))
         return cp_fail(error, CP_CRASH_FAILED, "the physics engine ODE refused the step at %g s",
                        dt * (double)run->sample);

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#define ZSTD_STATIC_LINKING_ONLY // memory of our own
 #include <zstd.h>
 
 #define ZSTD_LEVEL 19
@@ -126,6 +127,34 @@ static size_t write_header(size_t count, double interval_s, unsigned char header
     return used;
 }
 
+// Memory of one compression. zstd makes its tables of the dictionary on the way, and writes through
+// what it is given where there is no memory for them: the first requests, these among them, are
+// served from one block that is there before.
+typedef struct zstd_block {
+    unsigned char *bytes;
+    size_t used;
+} zstd_block;
+
+enum { ZSTD_BLOCK_BYTES = 1 << 19 };
+
+static void *take_of_block(void *opaque, size_t size)
+{
+    zstd_block *block = opaque;
+    size_t rounded = (size + 63) & ~(size_t)63; // as aligned as malloc's, and more
+    if (rounded < size || rounded > ZSTD_BLOCK_BYTES - block->used)
+        return malloc(size);
+    block->used += rounded;
+    return block->bytes + block->used - rounded;
+}
+
+static void give_to_block(void *opaque, void *memory)
+{
+    const zstd_block *block = opaque;
+    uintptr_t begin = (uintptr_t)block->bytes, place = (uintptr_t)memory;
+    if (place < begin || place >= begin + ZSTD_BLOCK_BYTES)
+        free(memory);
+}
+
 // One frame with a checksum of its content; a zstd error code where that fails.
 static size_t compress_checked(ZSTD_CCtx *context, void *room, size_t room_size, const void *bytes,
                                size_t size)
@@ -147,6 +176,7 @@ cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size, cp_e
     unsigned char *bytes = NULL;
     unsigned char *packed = NULL;
     ZSTD_CCtx *context = NULL;
+    zstd_block block = {0};
     cp_status status = check_size((int64_t)count, pulse->sample_interval_s, error);
     if (status == CP_OK)
         status = allocate_steps(count, steps, error);
@@ -167,7 +197,10 @@ cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size, cp_e
         status = cp_fail_memory(error, "pulse");
         goto done;
     }
-    context = ZSTD_createCCtx();
+    block.bytes = malloc(ZSTD_BLOCK_BYTES);
+    if (block.bytes != NULL)
+        context = ZSTD_createCCtx_advanced(
+            (ZSTD_customMem){.customAlloc = take_of_block, .customFree = give_to_block, &block});
     if (context == NULL) {
         status = cp_fail_memory(error, "pulse");
         goto done;
@@ -183,6 +216,7 @@ cp_status cp_pulse_encode(const cp_pulse *pulse, void **blob, size_t *size, cp_e
     packed = NULL;
 done:
     ZSTD_freeCCtx(context);
+    free(block.bytes);
     free(packed);
     free(bytes);
     free(steps[0]);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/answer.h"
 
+#include "core/memory_stream.h"
 #include "report/conditions.h"
 
 #include <math.h>
@@ -493,7 +494,7 @@ cp_status cp_comparison_answer(const cp_study_data *data, const cp_comparison *c
 {
     *answer = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(answer, &size);
+    FILE *out = cp_memory_stream(answer, &size);
     if (!out)
         return cp_fail_memory(error, "the answer of a comparison");
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/caveats.h"
 
+#include "core/memory_stream.h"
 #include "core/safe_text.h"
 #include "store/query.h"
 
@@ -85,7 +86,7 @@ char *cp_caveats_paragraph(const cp_caveats *caveats)
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    FILE *out = cp_memory_stream(&text, &size);
     if (out == NULL)
         return NULL;
     for (size_t k = 0; k < caveats->count; k++)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/conditions.h"
 
+#include "core/memory_stream.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +16,7 @@ static char *lengthened(const char *of, const char *treatment, const char *own)
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    FILE *out = cp_memory_stream(&text, &size);
     if (!out)
         return NULL;
     if (of)
@@ -92,7 +94,7 @@ void cp_conditions_destroy(cp_conditions *c)
 bool cp_condition_begin(cp_condition_draft *d, cp_conditions *c)
 {
     *d = (cp_condition_draft){0};
-    d->out = open_memstream(&d->text, &d->size);
+    d->out = cp_memory_stream(&d->text, &d->size);
     c->failed |= !d->out;
     return d->out != NULL;
 }

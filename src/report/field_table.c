@@ -3,6 +3,7 @@
 
 #include "core/csv_table.h"
 #include "core/file.h"
+#include "core/memory_stream.h"
 #include "core/safe_text.h"
 
 #include <zlib.h>
@@ -138,7 +139,7 @@ static char *joined(const char *from)
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    FILE *out = cp_memory_stream(&text, &size);
     if (!out)
         return NULL;
     for (;;) {

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/field_comparison.h"
 
+#include "core/memory_stream.h"
+
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -114,7 +116,7 @@ cp_status cp_field_words(const cp_comparison *comparison, const cp_field_request
 {
     size_t size = 0;
     *words = NULL;
-    FILE *out = open_memstream(words, &size);
+    FILE *out = cp_memory_stream(words, &size);
     if (!out)
         return cp_fail_memory(error, "what to say of a field");
     const cp_field_variant *v = baseline_of(comparison);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/network_background.h"
 
+#include "core/memory_stream.h"
 #include "core/safe_text.h"
 #include "stats/rates.h"
 #include "store/query.h"
@@ -51,7 +52,7 @@ static char *text_of(const cp_cell *cell)
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    FILE *out = cp_memory_stream(&text, &size);
     if (!out)
         return NULL;
     double crashes = cell[CRASHES].real, other = cell[OTHER].real;
@@ -211,7 +212,7 @@ cp_status cp_network_backgrounds_paragraph(const cp_network_backgrounds *backgro
 {
     size_t size = 0;
     *paragraph = NULL;
-    FILE *out = open_memstream(paragraph, &size);
+    FILE *out = cp_memory_stream(paragraph, &size);
     if (!out)
         return cp_fail_memory(error, "backgrounds");
     write_paragraph(backgrounds, out);

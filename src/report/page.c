@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/page.h"
 
+#include "core/memory_stream.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,7 +40,7 @@ cp_status cp_page_fill(const char *template_text, const cp_page_part *part, size
                        char **page, size_t *size, cp_error *error)
 {
     *page = NULL;
-    FILE *out = open_memstream(page, size);
+    FILE *out = cp_memory_stream(page, size);
     if (!out)
         return cp_fail_memory(error, "a page");
     cp_status status = fill(out, template_text, part, part_count, error);

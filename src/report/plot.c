@@ -2,6 +2,7 @@
 #include "report/plot.h"
 
 #include "core/file.h"
+#include "core/memory_stream.h"
 #include "core/scratch.h"
 #include "report/plot_data.h"
 #include "report/slice_sample.h"
@@ -126,9 +127,9 @@ static cp_status make(cp_plot *p, cp_plot_kind kind, char **data, char **numbers
     char *list[LISTS] = {NULL};
     size_t data_size = 0, size[LISTS] = {0}, all = 128;
     FILE **const stream[LISTS] = {&p->variants, &p->bars, &p->panels, &p->boxes};
-    p->out = open_memstream(data, &data_size);
+    p->out = cp_memory_stream(data, &data_size);
     for (int k = 0; k < LISTS; k++)
-        *stream[k] = open_memstream(&list[k], &size[k]);
+        *stream[k] = cp_memory_stream(&list[k], &size[k]);
     cp_status status = p->out && p->variants && p->bars && p->panels && p->boxes
                            ? write_streams(p, kind, error)
                            : cp_fail_memory(error, "a figure");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/study_data.h"
 
+#include "core/memory_stream.h"
 #include "core/safe_text.h"
 #include "report/query_json.h"
 #include "report/study_places.h"
@@ -554,7 +555,7 @@ cp_status cp_study_choose(cp_store *store, const cp_study_data *data, const char
                        "--by must be one column of the view crash_vehicle_list, found '%s'", by);
     char *sql = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(&sql, &size);
+    FILE *out = cp_memory_stream(&sql, &size);
     choice->chosen = calloc(data->vehicle_count + 1, sizeof *choice->chosen);
     choice->group = calloc(data->vehicle_count + 1, sizeof *choice->group);
     choice->value = calloc(CP_CHOICE_VALUES_MAX, sizeof *choice->value);

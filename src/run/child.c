@@ -177,14 +177,19 @@ static void explain(cp_child *child, int wait_status, char reason[CP_CHILD_REASO
         append(reason, text);
         append_tail(child->messages, reason);
     } else if (length <= 0) {
-        append(reason, "ended without a message");
+        char text[64];
+        snprintf(text, sizeof text, "ended without a message (exit code %d)",
+                 WEXITSTATUS(wait_status));
+        append(reason, text);
         append_tail(child->messages, reason);
     }
 }
 
 void cp_child_collect(cp_child *child, int wait_status, cp_child_end *end)
 {
-    end->exit_code = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : -1;
+    int code = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : -1;
+    // SUMO may end the process before the work is done: that is a failure, whatever it says.
+    end->exit_code = code == CP_WORKER_EXIT_DONE ? 0 : code == 0 ? 1 : code;
     end->wall_time_s = cp_clock_s() - child->started_s;
     end->reason[0] = '\0';
     pass_on_log(child->messages, child->said);

@@ -25,7 +25,8 @@ typedef struct cp_child {
 
 /* How a child ended. */
 typedef struct cp_child_end {
-    int exit_code; /* -1 when a signal ended it */
+    int exit_code; /* 0: CP_WORKER_EXIT_DONE; 1: any failure, an exit with 0 before the work was
+                      done too; -1 when a signal ended it */
     double wall_time_s;
     char reason[CP_CHILD_REASON_SIZE]; /* "" after success: its error text, or how it died, and the
                                           last lines of its stderr */

@@ -10,8 +10,11 @@
 /* What a worker process does: one replication, one background, or one probe. SUMO allows one
  * simulation a process and may abort it; so whatever happens here happens to this process only. */
 
-/* Exit code of a worker that found its replication taken or finished by somebody else. */
-#define CP_WORKER_EXIT_ELSEWHERE 3
+/* Exit codes of a worker that did what it was started for, and of one that found its replication
+ * taken or finished by somebody else. Not 0: a library that ends the process on its own, with
+ * whatever code, has done nothing. */
+#define CP_WORKER_EXIT_DONE 40
+#define CP_WORKER_EXIT_ELSEWHERE 41
 /* Descriptor on which it tells the runner what went wrong: the text of the error, nothing else. */
 #define CP_WORKER_REPORT_FD 3
 

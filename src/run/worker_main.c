@@ -152,7 +152,7 @@ static int finish(cp_status status, int elsewhere, const cp_error *error)
         tell_error(error);
         return cp_status_exit_code(status);
     }
-    return elsewhere ? CP_WORKER_EXIT_ELSEWHERE : 0;
+    return elsewhere ? CP_WORKER_EXIT_ELSEWHERE : CP_WORKER_EXIT_DONE;
 }
 
 int main(int argc, char **argv)

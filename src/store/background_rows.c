@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/background_rows.h"
 
+#include "core/memory_stream.h"
 #include "store/store_sqlite.h"
 
 #include <stdio.h>
@@ -173,7 +174,7 @@ static char *planned_hashes(const cp_plan_rows *plan)
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    FILE *out = cp_memory_stream(&text, &size);
     if (out == NULL)
         return NULL;
     fputc('[', out);

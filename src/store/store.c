@@ -283,6 +283,12 @@ static cp_status fail_opening(cp_store *store, int code, cp_error *error)
 {
     if (store->handle == NULL || (code & 0xff) == SQLITE_NOMEM)
         return cp_fail_memory(error, store->path);
+    // A disk that fails or is full, and a process with too many files, are no fault of the file.
+    int why = sqlite3_system_errno(store->handle);
+    bool outside = why == EIO || why == EMFILE || why == ENFILE || why == ENOSPC;
+    if ((code & 0xff) == SQLITE_IOERR || (code & 0xff) == SQLITE_FULL ||
+        ((code & 0xff) == SQLITE_CANTOPEN && outside))
+        return cp_store_fail(store, error, "cannot be opened");
     return cp_fail(error, CP_BAD_INPUT, "%s: cannot be opened: %s", store->path,
                    sqlite3_errmsg(store->handle));
 }

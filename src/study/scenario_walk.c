@@ -2,6 +2,7 @@
 #include "study/scenario_walk.h"
 
 #include "core/file.h"
+#include "core/memory_stream.h"
 
 #include <ctype.h>
 #include <jansson.h>
@@ -37,12 +38,15 @@ char *cp_scenario_with_environment(const char *text)
 {
     char *whole = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(&whole, &size);
+    FILE *out = cp_memory_stream(&whole, &size);
     if (out == NULL)
         return NULL;
+    bool lost = false;
     while (*text != '\0') {
         size_t length = strncmp(text, "${", 2) == 0 ? strcspn(text, "}") : 0;
-        char *name = length > 2 && text[length] == '}' ? strndup(text + 2, length - 2) : NULL;
+        bool is_name = length > 2 && text[length] == '}';
+        char *name = is_name ? strndup(text + 2, length - 2) : NULL;
+        lost |= is_name && name == NULL;
         const char *value = name != NULL ? getenv(name) : NULL;
         if (value != NULL)
             fputs(value, out);
@@ -51,7 +55,11 @@ char *cp_scenario_with_environment(const char *text)
         text += value != NULL ? length + 1 : 1;
         free(name);
     }
-    return fclose(out) == 0 ? whole : NULL;
+    lost |= fclose(out) != 0;
+    if (!lost)
+        return whole;
+    free(whole);
+    return NULL;
 }
 
 // ---- the walk ------------------------------------------------------------------------------

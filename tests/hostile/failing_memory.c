@@ -2,12 +2,17 @@
 /* Preloaded into a program: the k-th request for memory after main has begun is refused
  * (FAIL_AT=k), all others are served. FAIL_IN: only in the program of this name. COUNT_FILE: the
  * number of requests is written there at the end. What loaders and constructors of libraries ask
- * for before main is not counted: no code of ours has run by then. */
+ * for before main is not counted: no code of ours has run by then. PATHS_FILE: who asks, a 64-bit
+ * hash of the PATHS_DEPTH innermost calls that lead to each request, goes to the file of this name
+ * and
+ * ".<process id>". */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
+#include <execinfo.h>
 #include <fcntl.h>
 #include <stdatomic.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,11 +34,65 @@ static atomic_int main_has_begun;
 static atomic_long requests;
 static long fail_at = -1; /* -1: not read yet */
 
+// ---- who asks ------------------------------------------------------------------------------
+
+enum { CALLS_MAX = 32, CALLS_OF_OURS = 2, PATHS_AT_ONCE = 8192 };
+
+static int paths_file = -1;
+static int paths_depth;
+static uint64_t path_of[PATHS_AT_ONCE];
+static size_t paths_kept;
+static atomic_flag paths_are_used = ATOMIC_FLAG_INIT;
+
+static void write_paths(void)
+{
+    size_t size = paths_kept * sizeof *path_of;
+    if (paths_file >= 0 && write(paths_file, path_of, size) != (ssize_t)size)
+        _exit(99);
+    paths_kept = 0;
+}
+
+// The addresses are the same within one process, which is all that is asked of them.
+static void remember_path(void)
+{
+    void *call[CALLS_MAX];
+    while (atomic_flag_test_and_set(&paths_are_used))
+        continue;
+    int count = backtrace(call, paths_depth + CALLS_OF_OURS);
+    uint64_t hash = 14695981039346656037u; // FNV-1a
+    for (int k = CALLS_OF_OURS; k < count; k++)
+        hash = (hash ^ (uintptr_t)call[k]) * 1099511628211u;
+    path_of[paths_kept++] = hash;
+    if (paths_kept == PATHS_AT_ONCE)
+        write_paths();
+    atomic_flag_clear(&paths_are_used);
+}
+
+static void begin_paths(void)
+{
+    char name[4096];
+    void *call[CALLS_MAX];
+    const char *path = getenv("PATHS_FILE"), *in = getenv("FAIL_IN");
+    if (path == NULL || (in != NULL && strcmp(in, program_invocation_short_name) != 0))
+        return;
+    const char *depth = getenv("PATHS_DEPTH");
+    paths_depth = depth != NULL ? atoi(depth) : 0;
+    if (paths_depth < 1 || paths_depth > CALLS_MAX - CALLS_OF_OURS)
+        _exit(99);
+    snprintf(name, sizeof name, "%s.%ld", path, (long)getpid());
+    paths_file = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    backtrace(call, CALLS_MAX); // the first asks for memory itself
+}
+
+// ---- requests ------------------------------------------------------------------------------
+
 static int refused(void)
 {
     if (!atomic_load(&main_has_begun))
         return 0;
     long number = atomic_fetch_add(&requests, 1) + 1;
+    if (paths_file >= 0)
+        remember_path();
     if (fail_at < 0) {
         const char *at = getenv("FAIL_AT"), *in = getenv("FAIL_IN");
         int ours = in == NULL || strcmp(in, program_invocation_short_name) == 0;
@@ -78,6 +137,7 @@ int posix_memalign(void **memory, size_t alignment, size_t size)
 
 static int begin_main(int argc, char **argv, char **environment)
 {
+    begin_paths();
     atomic_store(&main_has_begun, 1);
     return program_main(argc, argv, environment);
 }
@@ -96,6 +156,7 @@ int __libc_start_main(main_function *main, int argc, char **argv, void (*init)(v
 
 __attribute__((destructor)) static void write_count(void)
 {
+    write_paths();
     const char *path = getenv("COUNT_FILE");
     const char *in = getenv("FAIL_IN");
     if (path == NULL || (in != NULL && strcmp(in, program_invocation_short_name) != 0))

@@ -2,8 +2,11 @@
 """Every request for memory is refused in turn, one a run of a command. Either the command does not
 need it, and gives what it gives otherwise, or it ends with a message and exit code 1; it never gives
 another number, half a file or a row of a database that is not the right one. --samples N: about N
-requests a command instead of all."""
+requests a command instead of all. --per-path N: of the requests that the same calls lead to (the innermost
+--depth of them), N spread over all, the first among them: most of a command's hundred thousands are such
+repetitions."""
 import argparse
+import array
 import collections
 import concurrent.futures
 import hashlib
@@ -57,6 +60,8 @@ parser.add_argument("--db", required=True, help="a study's database")
 parser.add_argument("--network", required=True, help="folder of the crossing")
 parser.add_argument("--vehicles", required=True)
 parser.add_argument("--samples", type=int, default=0, help="of each command's requests; 0: all")
+parser.add_argument("--per-path", type=int, default=0, help="of the requests that the same calls lead to")
+parser.add_argument("--depth", type=int, default=10, help="calls that make a path")
 parser.add_argument("--jobs", type=int, default=2)
 parser.add_argument("--only", action="append", help="this command only")
 a = parser.parse_args()
@@ -134,7 +139,20 @@ def state_of(folder, before):
     return files
 
 
-def run(name, source, at=None):
+def by_path(files):
+    """Numbers of requests to refuse: --per-path of every path of calls, whichever process went it."""
+    where = collections.defaultdict(set)
+    for path in files:
+        for k, value in enumerate(array.array("Q", path.read_bytes()), 1):
+            where[value].add(k)
+    places = set()
+    for found in map(sorted, where.values()):
+        few = max(1, a.per_path - 1)
+        places.update(found[k * (len(found) - 1) // few] for k in range(a.per_path))
+    return sorted(places), len(where)
+
+
+def run(name, source, at=None, paths=None):
     words, _, program = COMMANDS[name]
     with tempfile.TemporaryDirectory() as text:
         folder = pathlib.Path(text)
@@ -145,8 +163,12 @@ def run(name, source, at=None):
                            FAIL_IN=program, TMPDIR=text)
         if at is not None:
             environment["FAIL_AT"] = str(at)
+        if paths is not None:
+            environment.update(PATHS_FILE=str(paths / "paths"), PATHS_DEPTH=str(a.depth))
         try:
-            result = subprocess.run([a.crashpulse, *words], cwd=folder, env=environment, timeout=120,
+            # At the same addresses in every process, so that their paths can be told to be the same.
+            fixed = ["setarch", "-R"] if paths else []
+            result = subprocess.run([*fixed, a.crashpulse, *words], cwd=folder, env=environment, timeout=120,
                                     capture_output=True)
         except subprocess.TimeoutExpired:
             return "no end in 120 s", None, None, None, None
@@ -200,7 +222,12 @@ with tempfile.TemporaryDirectory() as text:
         assert number > 100, (name, number)
         step = max(1, round(number / (a.samples * share))) if a.samples else 1
         # One more or less, so that a step is no multiple of what repeats.
-        places = list(range(1, number + 1, step))
+        places, paths = list(range(1, number + 1, step)), 0
+        if a.per_path:
+            with tempfile.TemporaryDirectory() as recorded:
+                recorded = pathlib.Path(recorded)
+                run(name, source, paths=recorded)
+                places, paths = by_path(sorted(recorded.iterdir()))
         faults = collections.defaultdict(list)
         with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
             for at, found in zip(places, pool.map(lambda k: run(name, source, k), places)):
@@ -208,7 +235,8 @@ with tempfile.TemporaryDirectory() as text:
                 if fault:
                     faults[re.sub("[0-9]{4,}", "N", fault)].append(at)
         tried += len(places)
-        print(f"{name}: {len(places)} of {number} requests refused", flush=True)
+        by = f", {paths} paths of calls" if paths else ""
+        print(f"{name}: {len(places)} of {number} requests refused{by}", flush=True)
         for fault, where in faults.items():
             wrong += len(where)
             print(f"  {len(where)} times, first at {where[0]}: {fault}", flush=True)

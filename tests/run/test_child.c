@@ -32,7 +32,7 @@ static void a_worker_gets_its_environment(void **state)
     assert_int_equal(unsetenv("GLIBC_TUNABLES"), 0);
     assert_int_equal(setenv("CHILD_TEST", "as it was", 1), 0);
     cp_child_end end = run("test \"$GLIBC_TUNABLES\" = glibc.malloc.hugetlb=1 && "
-                           "test \"$CHILD_TEST\" = 'as it was'");
+                           "test \"$CHILD_TEST\" = 'as it was' && exit 40");
     assert_int_equal(end.exit_code, 0);
     assert_string_equal(end.reason, "");
 }
@@ -45,11 +45,22 @@ static void a_failed_worker_says_what_it_wrote_last(void **state)
     assert_non_null(strstr(end.reason, "something broke"));
 }
 
+// As when a library calls exit(0) in the middle.
+static void a_worker_that_only_ends_has_done_nothing(void **state)
+{
+    (void)state;
+    cp_child_end end = run("echo half way >&2; exit 0");
+    assert_int_equal(end.exit_code, 1);
+    assert_non_null(strstr(end.reason, "ended without a message (exit code 0)"));
+    assert_non_null(strstr(end.reason, "half way"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_worker_gets_its_environment),
         cmocka_unit_test(a_failed_worker_says_what_it_wrote_last),
+        cmocka_unit_test(a_worker_that_only_ends_has_done_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,7 +30,7 @@ FIGURES = ["figure-rate", "figure-ecdf", "figure-difference", "figure-paired", "
            "figure-benefit", "figure-forest", "figure-above-delta-v", "figure-delta-v", "figure-convergence", "figure-risk"]
 # In this order, from the question to what repeats the study.
 SECTIONS = ["h-variants", "h-design", "h-rates", "h-quantiles", "h-contrasts", "h-where", "h-injuries", "h-pulses",
-            "h-validity", "h-reproduce"]
+            "h-functions", "h-validity", "h-reproduce"]
 
 # What the downloads would write, caught instead of saved.
 CATCH_DOWNLOADS = """

@@ -316,6 +316,112 @@ static void some_targets_are_never_detected(void **unused)
     assert_true(found > 15 && found < 45);
 }
 
+// ---- a junction with a sign --------------------------------------------------------------
+
+static cp_lane_map *sign_map;
+static cp_next_light sign_light; /* of car 0 */
+
+static cp_status sign_lane_map(const cp_lane_map **map, cp_error *error)
+{
+    (void)error;
+    *map = sign_map;
+    return CP_OK;
+}
+
+static cp_status sign_next_lanes(uint32_t vehicle, uint32_t *lanes, size_t room, size_t *count,
+                                 cp_error *error)
+{
+    (void)room, (void)error;
+    lanes[0] = 1;
+    *count = vehicle == 0 ? 1 : 0;
+    return CP_OK;
+}
+
+static cp_status sign_next_light(uint32_t vehicle, cp_next_light *light, cp_error *error)
+{
+    (void)error;
+    *light = sign_light;
+    if (vehicle != 0)
+        *light = (cp_next_light){.distance_m = INFINITY, .number = SUMO_BRIDGE_NONE};
+    else if (sign_light.is_red)
+        light->distance_m = 100.0 - road.cars[0].state.front_x_m;
+    return CP_OK;
+}
+
+/* Car 0 comes at 15 m/s along a road whose end, where the sign would be, is at x = 100 m; a slow
+ * one crosses behind it. Place at which it became a threat. */
+static double threat_at_m(bool gives_way, bool is_red)
+{
+    static const cp_lane_point own[] = {{0, 0, 0, 0}, {100, 0, 0, 100}};
+    static const cp_lane_point on[] = {{100, 0, 0, 0}, {200, 0, 0, 100}};
+    static const cp_lane_point across[] = {{110, -50, 0, 0}, {110, 50, 0, 100}};
+    const cp_lane_link link[] = {{1, CP_LANE_NONE, gives_way}};
+    const cp_lane lanes[] = {{.point = own, .point_count = 2, .link = link, .link_count = 1},
+                             {.point = on, .point_count = 2, .edge = 1},
+                             {.point = across, .point_count = 2, .edge = 2}};
+    cp_traffic_source source = ROAD;
+    cp_lookout_settings settings = plain();
+    cp_traffic *traffic = NULL;
+    cp_threat threat;
+    cp_error error = {0};
+    assert_int_equal(cp_lane_map_create(lanes, 3, &sign_map, &error), CP_OK);
+    source.lane_map = sign_lane_map;
+    source.next_lanes = sign_next_lanes;
+    source.next_light = sign_next_light;
+    sign_light = (cp_next_light){.distance_m = INFINITY, .is_red = is_red};
+    settings.ttc_s = 3.0;
+    memset(&road, 0, sizeof road);
+    road.step_s = 0.05;
+    assert_int_equal(cp_traffic_create_from(&source, 0.05, &traffic, &error), CP_OK);
+    assert_int_equal(cp_road_view_create(traffic, &settings.view, &error), CP_OK);
+    road_add("own", 30.0, 0.0, 0.0, 15.0);
+    road_add("across", 110.0, -6.0, CP_PI / 2.0, 1.5)->state.lane = 2;
+    assert_true(find_threat(traffic, &settings, &threat));
+    cp_road_view_destroy(settings.view);
+    cp_traffic_destroy(traffic);
+    cp_lane_map_destroy(sign_map);
+    return 30.0 + 15.0 * (threat.instant_s - 0.05);
+}
+
+static void who_can_still_wait_at_ease_is_left_alone(void **unused)
+{
+    (void)unused;
+    // 3 s before the contact at x = 109.1 m.
+    assert_true(fabs(threat_at_m(false, false) - (109.1 - 45.0)) < 0.1);
+    // From 15 m/s he stops within 25 m at ease: a threat when the line is nearer.
+    assert_true(fabs(threat_at_m(true, false) - 75.0) < 0.1);
+    assert_true(fabs(threat_at_m(false, true) - 75.0) < 1.0);
+}
+
+static void who_brakes_at_ease_for_a_queue_is_left_alone(void **unused)
+{
+    (void)unused;
+    // A standing car 24 m ahead takes 4.7 m/s2 from 15 m/s, one 26 m ahead 4.3, for which braking
+    // with 3 m/s2 will do, for now. (road_step: the command holds for the step before the look.)
+    for (int is_far = 0; is_far < 2; is_far++) {
+        cp_lookout_settings settings = plain();
+        cp_error error = {0};
+        cp_threat threat;
+        bool found = false;
+        settings.required_m_s2 = 3.0;
+        settings.ttc_s = 2.4;
+        cp_traffic *traffic = road_open(0.1);
+        cp_lookout lookout = cp_lookout_create(&settings, traffic);
+        road_car *own = road_add("own", 0.0, 0.0, 0.0, 15.3);
+        road_add("standing", 1.515 + (is_far ? 26.0 : 24.0) + 4.5, 0.0, 0.0, 0.0);
+        assert_int_equal(cp_traffic_step(traffic, &error), CP_OK);
+        own->command_m_s = 15.0;
+        assert_int_equal(cp_traffic_step(traffic, &error), CP_OK);
+        assert_int_equal(cp_lookout_step(&lookout, &error), CP_OK);
+        const cp_vehicle_motion *motion = cp_traffic_motion_of(traffic, 0);
+        assert_int_equal(cp_lookout_track(&lookout, motion, &error), CP_OK);
+        assert_int_equal(cp_lookout_threat(&lookout, motion, &found, &threat, &error), CP_OK);
+        assert_int_equal(found, !is_far);
+        cp_lookout_destroy(&lookout);
+        cp_traffic_destroy(traffic);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -330,6 +436,8 @@ int main(void)
         cmocka_unit_test(where_a_tight_corner_leads_is_not_known),
         cmocka_unit_test(moving_a_little_within_the_lane_is_no_threat),
         cmocka_unit_test(what_is_hidden_is_not_known),
+        cmocka_unit_test(who_can_still_wait_at_ease_is_left_alone),
+        cmocka_unit_test(who_brakes_at_ease_for_a_queue_is_left_alone),
         cmocka_unit_test(some_targets_are_never_detected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

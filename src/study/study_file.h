@@ -4,6 +4,7 @@
 
 #include "control/control.h"
 #include "core/error.h"
+#include "store/assessment_items.h"
 #include "study/scenario_files.h"
 
 #include <stddef.h>
@@ -87,6 +88,7 @@ typedef struct cp_study {
     double history_s;     /* kept of both cars before each crash; default 0; [0, 60] */
     double background_s;  /* simulated without driver errors, per network; default: duration_s; 0:
                              not at all, else > warmup_s */
+    bool said[CP_ASSESSMENT_ITEM_COUNT]; /* items that its assessment section has */
     cp_study_counterfactual counterfactual;
     cp_study_scenario *scenarios;
     size_t scenario_count;

@@ -250,8 +250,11 @@ static void treatments_are_in_every_figure(void **state)
                 fail_msg("kind %zu has no %s", k, name);
         }
         free(data);
-        if (cp_plot_write(f.store, &f.data, &f.comparison, CP_SCOPE_ALL, KIND[k], "test_plot.svg",
-                          &error) != CP_OK)
+        // gnuplot gets one of each sort: a curve, a map, rows with intervals.
+        bool drawn =
+            KIND[k] == CP_PLOT_OLC || KIND[k] == CP_PLOT_SITES || KIND[k] == CP_PLOT_FOREST;
+        if (drawn && cp_plot_write(f.store, &f.data, &f.comparison, CP_SCOPE_ALL, KIND[k],
+                                   "test_plot.svg", &error) != CP_OK)
             fail_msg("kind %zu: %s", k, error.text);
         unlink("test_plot.svg");
     }

@@ -71,5 +71,6 @@ window.addEventListener("resize", () => {
 // Paper shows everything: tables and SQL unfolded, as far as they are filled.
 window.addEventListener("beforeprint", () => theme(false));
 design();
+assessment();
 reproduce();
 update();

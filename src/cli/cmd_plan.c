@@ -220,6 +220,24 @@ static cp_status print_plan(const planned *p, const arguments *a, cp_error *erro
     return status;
 }
 
+// What of the assessment record only a person can say, and nobody has said.
+static void print_missing(const planned *p)
+{
+    static const char *const KEY[] = {
+#define KEY_OF(name, key, title, says) key,
+        CP_ASSESSMENT_ITEMS(KEY_OF)
+#undef KEY_OF
+    };
+    const char *separator = "assessment record: missing ";
+    for (size_t k = 0; k < CP_ASSESSMENT_ITEM_COUNT; k++) {
+        if (p->study.said[k])
+            continue;
+        printf("%s%s", separator, KEY[k]);
+        separator = ", ";
+    }
+    puts(*separator == ',' ? "" : "assessment record: nothing missing");
+}
+
 static void print_summary(const planned *p)
 {
     size_t total = p->rows.replication_count, done = 0;
@@ -241,6 +259,7 @@ static void print_summary(const planned *p)
     if (p->study.design == CP_DESIGN_COUNTERFACTUAL)
         printf("every crash of the baseline is run again with each of %zu treatments\n",
                p->study.variant_count - 1);
+    print_missing(p);
 }
 
 // ---- what SUMO is asked to write -----------------------------------------------------------

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/args.h"
 #include "cli/commands.h"
+#include "control/control.h"
 #include "core/log.h"
 #include "core/output_files.h"
 #include "report/report.h"
@@ -57,19 +58,37 @@ static const struct argp ARGP = {
         "  crashpulse report demo.db --output demo.html\n",
 };
 
+// Defaults of every driver error and function, so that the page can show what a study changed.
+static json_t *controls_json(void)
+{
+    json_t *controls = json_object();
+    for (size_t k = 0; k < CP_CONTROL_TYPE_COUNT; k++) {
+        const cp_control_type *type = CP_CONTROL_TYPE[k];
+        json_t *parameters = json_object();
+        for (size_t p = 0; p < type->parameter_count; p++)
+            json_object_set_new(parameters, type->parameters[p].name,
+                                json_real(type->parameters[p].standard));
+        json_object_set_new(controls, type->name,
+                            json_pack("{s:s, s:o}", "what", type->what, "parameters", parameters));
+    }
+    return controls;
+}
+
 cp_status cmd_report(int argc, char **argv, cp_error *error)
 {
     arguments a = {0};
     cp_args_parse(&ARGP, argc, argv, &a);
     cp_store *store = NULL;
+    json_t *controls = controls_json();
     cp_status status =
         cp_output_files_check(&a.output_path, 1, (const char *const[]){a.db_path}, 1, error);
     if (status == CP_OK)
         status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
     if (status == CP_OK)
-        status = cp_report_write(store, a.baseline, a.output_path, error);
+        status = cp_report_write(store, a.baseline, controls, a.output_path, error);
     if (status == CP_OK)
         cp_log_info("wrote %s", a.output_path);
+    json_decref(controls);
     cp_store_close(store);
     return status;
 }

@@ -16,6 +16,12 @@ static const cp_page_part *find_part(const cp_page_part *part, size_t count, con
     return NULL;
 }
 
+// A stream in memory that cannot grow tells it by what it returns, and by nothing else.
+static cp_status put(FILE *out, const char *text, size_t size, cp_error *error)
+{
+    return fwrite(text, 1, size, out) == size ? CP_OK : cp_fail_memory(error, "a page");
+}
+
 static cp_status fill(FILE *out, const char *text, const cp_page_part *part, size_t part_count,
                       cp_error *error)
 {
@@ -28,12 +34,14 @@ static cp_status fill(FILE *out, const char *text, const cp_page_part *part, siz
         if (!found)
             return cp_fail(error, CP_BAD_INPUT, "page template: nothing fills {{%.*s}}",
                            (int)length, open + 2);
-        fwrite(text, 1, (size_t)(open - text), out);
-        fputs(found->text, out);
+        cp_status status = put(out, text, (size_t)(open - text), error);
+        if (status == CP_OK)
+            status = put(out, found->text, strlen(found->text), error);
+        if (status != CP_OK)
+            return status;
         text = close + 2;
     }
-    fputs(text, out);
-    return CP_OK;
+    return put(out, text, strlen(text), error);
 }
 
 cp_status cp_page_fill(const char *template_text, const cp_page_part *part, size_t part_count,

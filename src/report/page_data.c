@@ -4,6 +4,7 @@
 #include "core/rng.h"
 #include "core/units.h"
 #include "report/answer.h"
+#include "report/assessment_record.h"
 #include "report/caveats.h"
 #include "report/comparison_json.h"
 #include "report/example_query.h"
@@ -286,6 +287,7 @@ typedef struct page_parts {
     json_t *pairs;
     json_t *backgrounds;
     json_t *caveats;
+    json_t *assessment;
     cp_corridor_pulses pulses;
     unsigned char *chosen;
     bool *drawn; /* of each crash */
@@ -343,6 +345,8 @@ static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t b
         status = backgrounds_json(store, &p->backgrounds, error);
     if (status == CP_OK)
         status = caveats_json(store, &p->caveats, error);
+    if (status == CP_OK)
+        status = cp_assessment_record_json(data, &p->assessment, error);
     return status;
 }
 
@@ -356,9 +360,10 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     cp_status status = make_parts(store, data, baseline, options, &p, answer_all, error);
     if (status == CP_OK) {
         *page = json_pack(
-            "{s:O, s:O, s:I, s:o, s:o, s:o, s:o, s:O, s:O, s:o, s:o, s:O, s:O, s:O, s:O, s:O, s:o, "
-            "s:o}",
-            "study", json_array_get(json_object_get(data->about, "study"), 0), "about", data->about,
+            "{s:O, s:O, s:O, s:I, s:o, s:o, s:o, s:o, s:O, s:O, s:o, s:o, s:O, s:O, s:O, s:O, s:O, "
+            "s:o, s:o}",
+            "assessment", p.assessment, "study",
+            json_array_get(json_object_get(data->about, "study"), 0), "about", data->about,
             "unfinished", (json_int_t)data->unfinished, "scenarios", scenarios_json(data),
             "crash_types", texts_json(data->crash_type, frontal_types(data)), "variants",
             variants_json(data, baseline), "validity",
@@ -380,6 +385,7 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     json_decref(p.pairs);
     json_decref(p.backgrounds);
     json_decref(p.caveats);
+    json_decref(p.assessment);
     cp_corridor_destroy(&p.pulses);
     free(p.chosen);
     free(p.drawn);

@@ -73,7 +73,8 @@ done:
     return status;
 }
 
-cp_status cp_report_write(cp_store *store, const char *baseline, const char *path, cp_error *error)
+cp_status cp_report_write(cp_store *store, const char *baseline, json_t *controls, const char *path,
+                          cp_error *error)
 {
     cp_study_data data;
     json_t *page_data = NULL, *activations = NULL;
@@ -93,6 +94,8 @@ cp_status cp_report_write(cp_store *store, const char *baseline, const char *pat
     options.ensemble = &ensemble;
     if (status == CP_OK)
         status = cp_page_data(store, &data, variant, &options, &page_data, &answer, error);
+    if (status == CP_OK && controls && json_object_set(page_data, "controls", controls) != 0)
+        status = cp_fail_memory(error, "a report");
     if (status == CP_OK)
         status = cp_false_activations_json(store, &activations, error);
     if (status == CP_OK)

@@ -3,6 +3,7 @@
 
 #include "core/file.h"
 #include "core/yaml_file.h"
+#include "study/assessment_section.h"
 #include "study/control_section.h"
 #include "study/study_parts.h"
 #include "study/sumo_configuration.h"
@@ -98,6 +99,7 @@ typedef struct raw_study {
     char *history_s;
     raw_after_crash *after_crash;
     raw_background *background;
+    cp_assessment_section *assessment;
     raw_scenario *scenarios;
     unsigned scenarios_count;
     raw_variant *variants;
@@ -191,6 +193,8 @@ static const cyaml_schema_field_t STUDY_FIELDS[] = {
                             after_crash, AFTER_CRASH_FIELDS),
     CYAML_FIELD_MAPPING_PTR("background", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
                             background, BACKGROUND_FIELDS),
+    CYAML_FIELD_MAPPING_PTR("assessment", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
+                            assessment, CP_ASSESSMENT_FIELDS),
     LIST("scenarios", raw_study, scenarios, SCENARIO),
     LIST("variants", raw_study, variants, VARIANT),
     CYAML_FIELD_MAPPING_PTR("vehicles", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
@@ -639,6 +643,8 @@ cp_status cp_study_load(const char *path, cp_study *study, cp_error *error)
     status = take_head(&file, raw, study, error);
     if (status == CP_OK)
         status = take_background(&file, raw->background, study, error);
+    if (status == CP_OK)
+        status = cp_assessment_take(&file, raw->assessment, study->said, error);
     if (status == CP_OK)
         status = take_scenarios(&file, raw, study, error);
     if (status == CP_OK)

@@ -4,6 +4,7 @@
 
 #include "control/control.h"
 #include "core/error.h"
+#include "store/assessment_items.h"
 #include "study/scenario_files.h"
 
 #include <stddef.h>
@@ -93,6 +94,7 @@ typedef struct cp_study {
                                 baseline's replications; default: 3, or as many as these */
     double background_s; /* simulated without driver errors, per network; default: duration_s; 0:
                             not at all, else > warmup_s */
+    bool said[CP_ASSESSMENT_ITEM_COUNT]; /* items that its assessment section has */
     cp_study_counterfactual counterfactual;
     cp_study_scenario *scenarios;
     size_t scenario_count;

@@ -30,7 +30,7 @@ FIGURES = ["figure-rate", "figure-ecdf", "figure-difference", "figure-paired", "
            "figure-benefit", "figure-forest", "figure-above-delta-v", "figure-delta-v", "figure-convergence", "figure-risk"]
 # In this order, from the question to what repeats the study.
 SECTIONS = ["h-variants", "h-design", "h-rates", "h-quantiles", "h-contrasts", "h-where", "h-injuries", "h-pulses",
-            "h-functions", "h-validity", "h-reproduce"]
+            "h-functions", "h-validity", "h-assessment", "h-reproduce"]
 
 # What the downloads would write, caught instead of saved.
 CATCH_DOWNLOADS = """
@@ -128,6 +128,57 @@ class Report(unittest.TestCase):
             self.assertNotIn("injur", text.lower())
         sections = self.browser.run("return Array.from(document.querySelectorAll('main section')).map(s => s.getAttribute('aria-labelledby'))")
         self.assertEqual(sections, SECTIONS)
+
+    def table(self, selector):
+        return self.browser.run("return Array.from(document.querySelectorAll(`${arguments[0]} tr`), row => Array.from(row.cells, cell => cell.textContent))", selector)
+
+    def test_parameters_show_what_differs(self):
+        head, *rows = self.table("#parameters-functions > .scroll")
+        self.assertEqual(head, ["function", "default", "baseline", "aeb"])
+        functions = json.loads(self.count("SELECT functions FROM variant WHERE name = 'aeb'"))
+        stored = functions["aeb"]["parameters"] if isinstance(functions, dict) else functions[0]["parameters"]
+        self.assertEqual(rows[0], ["aeb", "", "–", "yes"])
+        shown = {row[0].removeprefix("aeb."): row for row in rows[1:]}
+        # What is left out is at its default: it stands in the folded table.
+        everything = {row[0].removeprefix("aeb."): row for row in self.table("#parameters-functions details")[2:]}
+        self.assertEqual(sorted(everything), sorted(stored))
+        for name, row in everything.items():
+            self.assertEqual(float(row[3]), stored[name])
+            self.assertEqual(name in shown, row[1] not in ("–", row[3]), name)
+        head, *rows = self.table("#parameters-errors > .scroll")
+        self.assertEqual(head[2:], [row[0] for row in self.db.execute("SELECT name FROM scenario ORDER BY number")])
+        self.assertIn("failed_to_see", [row[0] for row in rows])
+
+    def test_the_assessment_record_names_what_is_missing(self):
+        head, *rows = self.table("#table-assessment")
+        self.assertEqual(len(rows), 14)
+        self.assertEqual(rows[0][1], self.count("SELECT question FROM study"))
+        self.assertEqual([row[1].startswith("missing: assessment.") for row in rows[1:]], 13 * [True])
+        self.assertIn("Missing: 13 of 14", self.browser.run("return document.getElementById('assessment-missing').textContent"))
+        # What the program knows is there all the same.
+        known = {row[0]: row[2] for row in rows}
+        self.assertIn("failed_to_see", known["Driver behaviour"])
+        inside, vehicles = self.db.execute("SELECT sum(validity = 'inside'), count(*) FROM crash_vehicle WHERE frontal").fetchone()
+        self.assertIn(f"{inside} of {vehicles} frontally struck vehicles inside", known["Models and their validation"])
+
+    def test_what_the_author_said_is_shown(self):
+        # The same study with an assessment in its file, multi-line and with markup in it.
+        path = OUTPUT / "said.db"
+        path.unlink(missing_ok=True)
+        said = sqlite3.connect(path)
+        self.db.backup(said)
+        said.execute("UPDATE study SET yaml = ?", ("study: x\nassessment:\n  target_market: <b>EU & UK</b>\n  limitations: >-\n    no rates\n    of traffic\n",))
+        said.commit()
+        said.close()
+        page = OUTPUT / "said.html"
+        subprocess.run([ARGS.crashpulse, "report", path, "--output", page], check=True)
+        self.browser.open(page.resolve().as_uri())
+        self.browser.settle()
+        rows = {row[0]: row[1] for row in self.table("#table-assessment")}
+        self.assertEqual(rows["Target region and time"], "<b>EU & UK</b>")
+        self.assertEqual(rows["Limitations"], "no rates of traffic")
+        self.assertTrue(rows["Projection"].startswith("missing: assessment.projection"))
+        self.assertEqual(self.browser.run("return document.querySelectorAll('#table-assessment .missing').length"), 11)
 
     def test_variants_can_be_left_out(self):
         def count(selector):

@@ -14,6 +14,7 @@
   const missing = value => value === null || value === undefined;
   const fixed = (value, digits) => missing(value) ? "–" : value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
   const integer = value => missing(value) ? "–" : d3.format(",")(value).replace(/,/g, " ");
+  const crashes = (n, kind) => `${integer(n)} ${kind ? `${kind} ` : ""}crash${n === 1 ? "" : "es"}`;
   const percent = value => missing(value) ? "–" : `${(100 * value).toFixed(0)} %`;
   const estimate = (e, digits) => missing(e) ? "–" : (e.relation === "=" ? "" : `${e.relation} `) + fixed(e.value, digits);
   const pValue = p => missing(p) ? "–" : p < 0.001 ? "< 0.001" : p.toFixed(3);
@@ -212,7 +213,7 @@
         const k = indexOf(v.variant), r = v.frontal_crashes_per_million_km, y = band * (row + 0.5) + 10;
         const label = inner.append("text").attr("y", y - 16);
         label.append("tspan").style("font-weight", 600).text(v.variant);
-        label.append("tspan").attr("class", "soft").text(`  ${v.frontal_crashes} crashes in ${integer(Math.round(v.vehicle_km))} veh-km${width < 460 ? "" : `, dispersion ${fixed(r.widening.dispersion, 2)}`}`);
+        label.append("tspan").attr("class", "soft").text(`  ${crashes(v.frontal_crashes)} in ${integer(Math.round(v.vehicle_km))} veh-km${width < 460 ? "" : `, dispersion ${fixed(r.widening.dispersion, 2)}`}`);
         if (missing(r.value)) return;
         const bar = (i, thick) => i.status === "value" && inner.append("line").attr("x1", x(i.low)).attr("x2", x(i.high)).attr("y1", y).attr("y2", y)
           .style("stroke", colour(k)).style("stroke-width", thick).style("opacity", thick > 3 ? 0.45 : 1);
@@ -459,7 +460,8 @@
   const mapFigure = figure("figure-map", "Crash configurations",
     () => "Frontal crashes by lateral offset of the opponent and angle (0° = exactly oncoming, ±90° = crossing), seen from the vehicle struck on its front; colour: closing speed. Filled: that vehicle is inside the validated range." + thinned(),
     function (svg, width) {
-      const rows = mapRows(), variants = data.variants.map((v, k) => k).filter(k => state.variants.has(k)), count = variants.length;
+      // Treatments of counterfactual pairs were not run: their crashes are no zero.
+      const rows = mapRows(), variants = shownVariants().map(v => indexOf(v.variant)), count = variants.length;
       const legendWidth = Math.min(220, width - 120), bar = svg.append("g").attr("transform", "translate(56,4)");
       d3.range(0, 44).forEach(k => bar.append("rect").attr("x", legendWidth * k / 44).attr("width", legendWidth / 44 + 0.5).attr("height", 8).style("fill", speedColour(130 * k / 43)));
       [0, 65, 130].forEach(v => bar.append("text").attr("x", legendWidth * v / 130).attr("y", 22).attr("text-anchor", "middle").text(v === 130 ? "≥ 130 km/h" : v));
@@ -475,7 +477,7 @@
         const panel = svg.append("g").attr("transform", `translate(${(place % columns) * panelWidth},${top + Math.floor(place / columns) * panelHeight})`);
         const title = panel.append("text").attr("x", margin.left).attr("y", 18);
         title.append("tspan").style("font-weight", 600).text(data.variants[variant].name);
-        title.append("tspan").attr("class", "soft").text(`  ${own.length} crashes`);
+        title.append("tspan").attr("class", "soft").text(`  ${crashes(own.length)}`);
         const inner = frame(panel, panelWidth, panelHeight, margin, x, y, "lateral offset, m", "angle, °", angles);
         inner.append("line").attr("x2", x.range()[1]).attr("y1", y(0)).attr("y2", y(0)).style("stroke", "var(--soft)");
         inner.append("line").attr("y2", y.range()[0]).attr("x1", x(0)).attr("x2", x(0)).style("stroke", "var(--soft)");
@@ -489,7 +491,7 @@
     function () {
       const rows = mapRows().map(k => [data.variants[vehicles.variant[k]].name, data.scenarios[vehicles.scenario[k]], data.crash_types[vehicles.crash_type[k]],
         vehicles.lateral_offset_m[k], vehicles.angle_deg[k], vehicles.closing_speed_km_h[k], data.validity[vehicles.validity[k]]]);
-      return { summary: `${rows.length} frontal crashes`, columns: ["variant", "scenario", "crash_type", "lateral_offset_m", "angle_deg", "closing_speed_km_h", "validity"], rows: rows };
+      return { summary: crashes(rows.length, "frontal"), columns: ["variant", "scenario", "crash_type", "lateral_offset_m", "angle_deg", "closing_speed_km_h", "validity"], rows: rows };
     });
 
   // ---- crash sites on the network --------------------------------------------------------------------
@@ -512,7 +514,7 @@
         const X = v => 8 + w / 2 + (v - cx) * scale, Y = v => h / 2 - (v - cy) * scale;
         const title = svg.append("text").attr("x", 8).attr("y", top + 12);
         title.append("tspan").style("font-weight", 600).text(readable(name));
-        title.append("tspan").attr("class", "soft").text(`  ${own.length} crashes`);
+        title.append("tspan").attr("class", "soft").text(`  ${crashes(own.length)}`);
         const panel = svg.append("g").attr("transform", `translate(0,${top + 20})`), clip = `clip-${scenario}-${Math.round(width)}`;
         panel.append("clipPath").attr("id", clip).append("rect").attr("x", 8).attr("width", w).attr("height", h);
         panel.append("rect").attr("x", 8).attr("width", w).attr("height", h).style("fill", "none").style("stroke", "var(--line)");
@@ -533,7 +535,7 @@
     },
     function () {
       const rows = mapRows().map(k => [data.variants[vehicles.variant[k]].name, data.scenarios[vehicles.scenario[k]], data.crash_types[vehicles.crash_type[k]], vehicles.x_m[k], vehicles.y_m[k], vehicles.closing_speed_km_h[k]]);
-      return { summary: `${rows.length} frontal crashes`, columns: ["variant", "scenario", "crash_type", "x_m", "y_m", "closing_speed_km_h"], rows: rows };
+      return { summary: crashes(rows.length, "frontal"), columns: ["variant", "scenario", "crash_type", "x_m", "y_m", "closing_speed_km_h"], rows: rows };
     });
 
   // ---- counterfactual outcomes as a flow ----------------------------------------------------------------
@@ -543,7 +545,7 @@
 
   // Crashes of others that the treatment brought about, and those it took away.
   function between(t) {
-    const parts = [[t.new_crashes, "new"], [t.vanished_crashes, "vanished"]].filter(p => p[0] > 0).map(p => `${integer(p[0])} ${p[1]} crash${p[0] === 1 ? "" : "es"}`);
+    const parts = [[t.new_crashes, "new"], [t.vanished_crashes, "vanished"]].filter(p => p[0] > 0).map(p => crashes(p[0], p[1]));
     return parts.length ? ` (${parts.join(" and ")} between others besides)` : "";
   }
 
@@ -555,7 +557,7 @@
         const g = svg.append("g").attr("transform", `translate(0,${place * panel + 22})`), height = panel - 60, scale = (height - 50) / Math.max(1, t.crashes);
         g.append("text").attr("x", 4).attr("y", -6).style("font-weight", 600).text(t.variant + between(t));
         g.append("rect").attr("x", left - 14).attr("width", 14).attr("height", Math.max(1, t.crashes * scale)).style("fill", "var(--v0)");
-        g.append("text").attr("x", left - 20).attr("y", t.crashes * scale / 2).attr("text-anchor", "end").text(`${t.crashes} crashes`);
+        g.append("text").attr("x", left - 20).attr("y", t.crashes * scale / 2).attr("text-anchor", "end").text(crashes(t.crashes));
         let from = 0, to = 0;
         const x1 = width - right;
         OUTCOMES.filter(o => t.outcomes[o] > 0).forEach(o => {
@@ -715,14 +717,14 @@
       line("of these front-front inside range", integer(v.front_front_inside), undefined, "front_front_inside");
       line("Rate per 10⁶ veh-km", rate(r.value), r.interval.status === "value" ? `95 % ${interval(r.interval, rate)}${r.bootstrap.status === "value" ? "" : " (Poisson, widened)"}` : undefined);
       const above = v.crashes_above.olc;
-      line(`Above ${above.x} g per 10⁶ veh-km`, rate(above.per_million_km), `${above.crashes} crashes; ${interval(above.interval, rate)}`);
+      line(`Above ${above.x} g per 10⁶ veh-km`, rate(above.per_million_km), `${crashes(above.crashes)}; ${interval(above.interval, rate)}`);
       line("Vehicles struck on the front", integer(v.frontal_vehicles), `${percent(v.share_inside_validity)} inside validated range`, "frontal_vehicles");
       line("Median OLC, g", estimate(olc.median, 1), `n = ${olc.n}${olc.censored ? `, ${olc.censored} censored` : ""}`, "median");
     });
     const filtered = state.scenario !== "" || state.crashType !== "";
     document.getElementById("slice-answer").textContent = filtered ? slice().answer : "";
     const total = d3.sum(shownVariants(), v => v.frontal_crashes);
-    document.getElementById("status").textContent = `${integer(total)} frontal crashes selected`;
+    document.getElementById("status").textContent = `${crashes(total, "frontal")} selected`;
   }
 
   // A table section with its CSV button and SQL.

@@ -141,11 +141,8 @@ static picker picker_for(double total, double p)
 
 // count observations of one value stand behind passed others. An order statistic is the value in
 // the middle of its place, so that weights that are no whole numbers pull it to neither side.
-static inline void pick(picker *p, double passed, double count, double value)
+static void pick(picker *p, double passed, double count, double value)
 {
-    // Far from its place, which is nearly always (the slack is below 1 up to 10^9 observations).
-    if (passed + count <= p->lower || passed > p->lower + 3.0)
-        return;
     double middle = p->lower + 0.5, slack = 1e-9 * fmax(1.0, passed + count);
     if (middle >= passed - slack && middle < passed + count - slack)
         p->low = value;
@@ -172,14 +169,29 @@ typedef struct figures {
 typedef struct climb {
     picker median, p90;
     double passed;
+    double wait; /* nothing is to be picked up to here */
     figures of;
 } climb;
 
 static climb climb_for(double total)
 {
-    return (climb){.median = picker_for(total, 0.5),
-                   .p90 = picker_for(total, 0.9),
-                   .of = {{NAN, NAN, NAN}, 0.0, 0.0}};
+    climb c = {.median = picker_for(total, 0.5),
+               .p90 = picker_for(total, 0.9),
+               .of = {{NAN, NAN, NAN}, 0.0, 0.0}};
+    c.wait = c.median.lower;
+    return c;
+}
+
+// Near the place of a quantile. Behind it is far from it: the slack is below 1 up to 10^9
+// observations.
+static void pick_both(climb *c, double count, double value)
+{
+    pick(&c->median, c->passed, count, value);
+    pick(&c->p90, c->passed, count, value);
+    if (c->passed > c->p90.lower + 3.0)
+        c->wait = INFINITY;
+    else if (c->passed > c->median.lower + 3.0)
+        c->wait = c->p90.lower;
 }
 
 // count observations of one value; none change nothing.
@@ -187,8 +199,8 @@ static inline void climb_on(climb *c, double count, double value)
 {
     if (!(count > 0.0))
         return;
-    pick(&c->median, c->passed, count, value);
-    pick(&c->p90, c->passed, count, value);
+    if (c->passed + count > c->wait)
+        pick_both(c, count, value);
     c->passed += count;
     if (isinf(value))
         c->of.censored += count;
@@ -265,7 +277,8 @@ static double largest_distance(const mix *m, const double *centre, double *diffe
         double apart = passed[1] / m->total[1] - passed[0] / m->total[0];
         for (size_t k = begin; difference && k < end; k++)
             difference[k] = apart;
-        largest = fmax(largest, fabs(apart - (centre ? centre[begin] : 0.0)));
+        double off = fabs(apart - (centre ? centre[begin] : 0.0));
+        largest = off > largest ? off : largest;
     }
     return largest;
 }

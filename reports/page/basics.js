@@ -16,6 +16,7 @@ const fixed = (value, digits) => missing(value) ? "–" : value.toFixed(digits).
 // A ratio; what is beyond a thousand is no more than that.
 const ratio = value => missing(value) ? "–" : value > 1000 ? "> 1000" : fixed(value, 2);
 const integer = value => missing(value) ? "–" : d3.format(",")(value).replace(/,/g, " ");
+const crashes = (n, kind) => `${integer(n)} ${kind ? `${kind} ` : ""}crash${n === 1 ? "" : "es"}`;
 const percent = value => missing(value) ? "–" : `${(100 * value).toFixed(0)} %`;
 const estimate = (e, digits) => missing(e) ? "–" : (e.relation === "=" ? "" : `${e.relation} `) + fixed(e.value, digits);
 const pValue = p => missing(p) ? "–" : p < 0.001 ? "< 0.001" : p.toFixed(3);

@@ -8,7 +8,7 @@ const OUTCOME_COLOUR = { avoided: "var(--v3)", mitigated: "var(--v1)", unchanged
 
 // Crashes of others that the treatment brought about, and those it took away.
 function between(t) {
-  const parts = [[t.new_crashes, "new"], [t.vanished_crashes, "vanished"]].filter(p => p[0] > 0).map(p => `${integer(p[0])} ${p[1]} crash${p[0] === 1 ? "" : "es"}`);
+  const parts = [[t.new_crashes, "new"], [t.vanished_crashes, "vanished"]].filter(p => p[0] > 0).map(p => crashes(p[0], p[1]));
   return parts.length ? ` (${parts.join(" and ")} between others besides)` : "";
 }
 
@@ -20,7 +20,7 @@ const flowFigure = data.study.design !== "counterfactual" ? null : figure("figur
       const g = svg.append("g").attr("transform", `translate(0,${place * panel + 22})`), height = panel - 60, scale = (height - 50) / Math.max(1, t.crashes);
       g.append("text").attr("x", 4).attr("y", -6).style("font-weight", 600).text(t.variant + between(t));
       g.append("rect").attr("x", left - 14).attr("width", 14).attr("height", Math.max(1, t.crashes * scale)).style("fill", "var(--v0)");
-      g.append("text").attr("x", left - 20).attr("y", t.crashes * scale / 2).attr("text-anchor", "end").text(`${t.crashes} crashes`);
+      g.append("text").attr("x", left - 20).attr("y", t.crashes * scale / 2).attr("text-anchor", "end").text(crashes(t.crashes));
       let from = 0, to = 0;
       const x1 = width - right;
       OUTCOMES.filter(o => t.outcomes[o] > 0).forEach(o => {

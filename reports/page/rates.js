@@ -19,7 +19,7 @@ const rateFigure = figure("figure-rate", "Frontal crash rate",
       const k = indexOf(v.variant), r = v.frontal_crashes_per_million_km, y = band * (row + 0.5) + 10;
       const label = inner.append("text").attr("y", y - 16);
       label.append("tspan").style("font-weight", 600).text(v.variant);
-      label.append("tspan").attr("class", "soft").text(`  ${v.frontal_crashes} crashes in ${integer(Math.round(v.vehicle_km))} veh-km${width < 460 ? "" : `, dispersion ${fixed(r.widening.dispersion, 2)}`}`);
+      label.append("tspan").attr("class", "soft").text(`  ${crashes(v.frontal_crashes)} in ${integer(Math.round(v.vehicle_km))} veh-km${width < 460 ? "" : `, dispersion ${fixed(r.widening.dispersion, 2)}`}`);
       if (missing(r.value)) return;
       const bar = (i, thick) => i.status === "value" && inner.append("line").attr("x1", x(i.low)).attr("x2", x(i.high)).attr("y1", y).attr("y2", y)
         .style("stroke", colour(k)).style("stroke-width", thick).style("opacity", thick > 3 ? 0.45 : 1);

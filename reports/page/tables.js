@@ -23,7 +23,7 @@ function variantCard(parent, v) {
   line("of these front-front inside range", integer(v.front_front_inside), undefined, "front_front_inside");
   line("Rate per 10⁶ veh-km", rate(r.value), r.interval.status === "value" ? `95 % ${interval(r.interval, rate)}${r.bootstrap.status === "value" ? "" : " (Poisson, widened)"}` : undefined);
   const above = v.crashes_above.olc;
-  line(`Above ${above.x} g per 10⁶ veh-km`, rate(above.per_million_km), `${above.crashes} crashes; ${interval(above.interval, rate)}`);
+  line(`Above ${above.x} g per 10⁶ veh-km`, rate(above.per_million_km), `${crashes(above.crashes)}; ${interval(above.interval, rate)}`);
   line("Vehicles struck on the front", integer(v.frontal_vehicles), `${percent(v.share_inside_validity)} inside validated range`, "frontal_vehicles");
   line("Median OLC, g", estimate(olc.median, 1), `n = ${olc.n}${olc.censored ? `, ${olc.censored} censored` : ""}`, "median");
 }
@@ -44,7 +44,7 @@ function cards() {
   const filtered = state.scenario !== "" || state.crashType !== "";
   document.getElementById("slice-answer").textContent = filtered ? slice().answer : "";
   const total = d3.sum(shownVariants(), v => v.frontal_crashes);
-  document.getElementById("status").textContent = `${integer(total)} frontal crashes selected`;
+  document.getElementById("status").textContent = `${crashes(total, "frontal")} selected`;
 }
 
 // A table section with its CSV button and SQL.

@@ -12,7 +12,8 @@ const speedColour = d3.scaleSequential(d3.interpolateViridis).domain([130, 0]).c
 const mapFigure = figure("figure-map", "Crash configurations",
   () => "Frontal crashes by lateral offset of the opponent and angle (0° = exactly oncoming, ±90° = crossing), seen from the vehicle struck on its front; colour: closing speed. Filled: that vehicle is inside the validated range." + treatedText() + thinned(),
   function (svg, width) {
-    const rows = mapRows(), variants = data.variants.map((v, k) => k).filter(k => state.variants.has(k)), count = variants.length;
+    // Treatments of counterfactual pairs were not run: their crashes are no zero.
+    const rows = mapRows(), variants = shownVariants().map(v => indexOf(v.variant)), count = variants.length;
     const legendWidth = Math.min(220, width - 120), bar = svg.append("g").attr("transform", "translate(56,4)");
     d3.range(0, 44).forEach(k => bar.append("rect").attr("x", legendWidth * k / 44).attr("width", legendWidth / 44 + 0.5).attr("height", 8).style("fill", speedColour(130 * k / 43)));
     [0, 65, 130].forEach(v => bar.append("text").attr("x", legendWidth * v / 130).attr("y", 22).attr("text-anchor", "middle").text(v === 130 ? "≥ 130 km/h" : v));
@@ -28,7 +29,7 @@ const mapFigure = figure("figure-map", "Crash configurations",
       const panel = svg.append("g").attr("transform", `translate(${(place % columns) * panelWidth},${top + Math.floor(place / columns) * panelHeight})`);
       const title = panel.append("text").attr("x", margin.left).attr("y", 18);
       title.append("tspan").style("font-weight", 600).text(data.variants[variant].name);
-      title.append("tspan").attr("class", "soft").text(`  ${own.length} crashes`);
+      title.append("tspan").attr("class", "soft").text(`  ${crashes(own.length)}`);
       const inner = frame(panel, panelWidth, panelHeight, margin, x, y, "lateral offset, m", "angle, °", angles);
       inner.append("line").attr("x2", x.range()[1]).attr("y1", y(0)).attr("y2", y(0)).style("stroke", "var(--soft)");
       inner.append("line").attr("y2", y.range()[0]).attr("x1", x(0)).attr("x2", x(0)).style("stroke", "var(--soft)");
@@ -42,7 +43,7 @@ const mapFigure = figure("figure-map", "Crash configurations",
   function () {
     const rows = mapRows().map(k => [data.variants[vehicles.variant[k]].name, data.scenarios[vehicles.scenario[k]], data.crash_types[vehicles.crash_type[k]],
       vehicles.lateral_offset_m[k], vehicles.angle_deg[k], vehicles.closing_speed_km_h[k], data.validity[vehicles.validity[k]]]);
-    return { summary: `${rows.length} frontal crashes`, columns: ["variant", "scenario", "crash_type", "lateral_offset_m", "angle_deg", "closing_speed_km_h", "validity"], rows: rows };
+    return { summary: crashes(rows.length, "frontal"), columns: ["variant", "scenario", "crash_type", "lateral_offset_m", "angle_deg", "closing_speed_km_h", "validity"], rows: rows };
   });
 
 // ---- crash sites on the network --------------------------------------------------------------------
@@ -65,7 +66,7 @@ const siteFigure = figure("figure-sites", "Crash sites",
       const X = v => 8 + w / 2 + (v - cx) * scale, Y = v => h / 2 - (v - cy) * scale;
       const title = svg.append("text").attr("x", 8).attr("y", top + 12);
       title.append("tspan").style("font-weight", 600).text(readable(name));
-      title.append("tspan").attr("class", "soft").text(`  ${own.length} crashes`);
+      title.append("tspan").attr("class", "soft").text(`  ${crashes(own.length)}`);
       const panel = svg.append("g").attr("transform", `translate(0,${top + 20})`), clip = `clip-${scenario}-${Math.round(width)}`;
       panel.append("clipPath").attr("id", clip).append("rect").attr("x", 8).attr("width", w).attr("height", h);
       panel.append("rect").attr("x", 8).attr("width", w).attr("height", h).style("fill", "none").style("stroke", "var(--line)");
@@ -86,5 +87,5 @@ const siteFigure = figure("figure-sites", "Crash sites",
   },
   function () {
     const rows = mapRows().map(k => [data.variants[vehicles.variant[k]].name, data.scenarios[vehicles.scenario[k]], data.crash_types[vehicles.crash_type[k]], vehicles.x_m[k], vehicles.y_m[k], vehicles.closing_speed_km_h[k]]);
-    return { summary: `${rows.length} frontal crashes`, columns: ["variant", "scenario", "crash_type", "x_m", "y_m", "closing_speed_km_h"], rows: rows };
+    return { summary: crashes(rows.length, "frontal"), columns: ["variant", "scenario", "crash_type", "x_m", "y_m", "closing_speed_km_h"], rows: rows };
   });

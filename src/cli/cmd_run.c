@@ -128,9 +128,10 @@ cp_status cmd_run(int argc, char **argv, cp_error *error)
     cp_status status = cp_runner_run(&options, &summary, error);
     if (summary.replications > 0)
         cp_log_info("%zu replications: %zu done before, %zu done now, %zu failed, %zu elsewhere; "
-                    "%zu crashes; %.1f s",
+                    "%zu crash%s; %.1f s",
                     summary.replications, summary.done_before, summary.done_now, summary.failed,
-                    summary.elsewhere, summary.crashes, summary.wall_time_s);
+                    summary.elsewhere, summary.crashes, summary.crashes == 1 ? "" : "es",
+                    summary.wall_time_s);
     if (status == CP_OK)
         status = warn_of_backgrounds(options.db_path, error);
     return status;

@@ -3,11 +3,13 @@
 
 #define EXAMPLE_QUERIES(X)                                                                         \
     X(exposure_and_rates)                                                                          \
+    X(crash_rates)                                                                                 \
     X(crashes_above_severity)                                                                      \
     X(olc_quantiles)                                                                               \
     X(olc_distribution)                                                                            \
     X(olc_against_closing_speed)                                                                   \
     X(configuration_map)                                                                           \
+    X(configuration_points)                                                                        \
     X(validity)                                                                                    \
     X(paired_replications)                                                                         \
     X(crash_sites)                                                                                 \

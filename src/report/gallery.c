@@ -80,24 +80,25 @@ static cp_status film_crash(cp_store *store, const cp_study_data *data, size_t v
     return CP_OK;
 }
 
-// Vehicles of a variant with an OLC, by OLC; those inside validity only, if there is one, as
-// of_inside tells.
+// Vehicles of a variant by OLC, left-censored ones below every value; those inside validity only,
+// if one of them has a value, as of_inside tells.
 static size_t rank_vehicles(const cp_study_data *data, size_t variant, size_t *vehicle,
                             double *olc_g, size_t *order, bool *of_inside)
 {
     for (int inside = 1; inside >= 0; inside--) {
         *of_inside = inside;
-        size_t count = 0;
+        size_t count = 0, known = 0;
         for (size_t k = 0; k < data->vehicle_count; k++) {
             const cp_study_vehicle *v = &data->vehicle[k];
             size_t own = data->replication[data->crash[v->crash].replication].variant;
-            if (own != variant || !v->frontal || v->olc != CP_OLC_KNOWN ||
+            if (own != variant || !v->frontal || v->olc == CP_OLC_FAILED ||
                 (inside && v->validity != 0))
                 continue;
-            olc_g[count] = v->olc_g;
+            known += v->olc == CP_OLC_KNOWN;
+            olc_g[count] = v->olc == CP_OLC_KNOWN ? v->olc_g : -INFINITY;
             vehicle[count++] = k;
         }
-        if (count > 0) {
+        if (known > 0) {
             gsl_sort_index(order, olc_g, 1, count);
             return count;
         }
@@ -121,10 +122,12 @@ cp_status cp_gallery_json(cp_store *store, const cp_study_data *data, json_t **g
         if (count == 0 || json_array_size(*gallery) + 2 > CP_GALLERY_MAX)
             continue;
         size_t middle = order[(count - 1) / 2], highest = order[count - 1];
-        status = film_crash(store, data, vehicle[middle],
-                            inside ? "the median OLC of its vehicles inside the validated range"
-                                   : "the median OLC of its vehicles, all outside the range",
-                            *gallery, error);
+        // A median that is left-censored has no crash to show.
+        if (isfinite(olc_g[middle]))
+            status = film_crash(store, data, vehicle[middle],
+                                inside ? "the median OLC of its vehicles inside the validated range"
+                                       : "the median OLC of its vehicles, all outside the range",
+                                *gallery, error);
         if (status == CP_OK && middle != highest)
             status =
                 film_crash(store, data, vehicle[highest],

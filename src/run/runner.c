@@ -457,7 +457,8 @@ static cp_status show_progress(runner *run, cp_error *error)
     if (!run->options->progress)
         return CP_OK;
     cp_status status = count_crashes(run, error);
-    snprintf(detail, sizeof detail, "%zu crashes", summary->crashes);
+    snprintf(detail, sizeof detail, "%zu crash%s", summary->crashes,
+             summary->crashes == 1 ? "" : "es");
     if (status == CP_OK)
         cp_progress_update(&run->progress, summary->done_now + summary->failed + summary->elsewhere,
                            detail);

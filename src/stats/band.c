@@ -26,8 +26,10 @@ static double largest_distance(const collector *c, const unsigned *weight)
     for (size_t k = 0; k < sample->count; k++) {
         passed += weight[sample->cluster[k]];
         bool step_ends = k + 1 == sample->count || sample->value[k + 1] != sample->value[k];
-        if (step_ends)
-            largest = fmax(largest, fabs(passed / total - (double)(k + 1) / (double)sample->count));
+        if (!step_ends)
+            continue;
+        double apart = fabs(passed / total - (double)(k + 1) / (double)sample->count);
+        largest = apart > largest ? apart : largest;
     }
     return largest;
 }

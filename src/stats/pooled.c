@@ -13,6 +13,7 @@ void cp_pooled_destroy(cp_pooled *pooled)
     free(pooled->size);
     free(pooled->stratum);
     free(pooled->factor);
+    free(pooled->times);
     *pooled = (cp_pooled){0};
 }
 
@@ -26,6 +27,7 @@ cp_status cp_pooled_create(const cp_sample *a, const cp_sample *b, const size_t 
     pooled->group = calloc(count + 1, sizeof *pooled->group);
     pooled->size = calloc(clusters + 1, sizeof *pooled->size);
     pooled->stratum = calloc(clusters + 1, sizeof *pooled->stratum);
+    pooled->times = calloc(clusters + 1, sizeof *pooled->times);
     if (pooled->stratum) {
         for (size_t c = 0; c < clusters; c++) {
             bool of_a = c < a->cluster_count;
@@ -37,7 +39,7 @@ cp_status cp_pooled_create(const cp_sample *a, const cp_sample *b, const size_t 
         pooled->factor = calloc(2 * pooled->strata, sizeof *pooled->factor);
     }
     if (!pooled->value || !pooled->cluster || !pooled->group || !pooled->size || !pooled->stratum ||
-        !pooled->factor) {
+        !pooled->factor || !pooled->times) {
         cp_pooled_destroy(pooled);
         return cp_fail_memory(error, "two samples");
     }
@@ -46,7 +48,8 @@ cp_status cp_pooled_create(const cp_sample *a, const cp_sample *b, const size_t 
     for (size_t i = 0, j = 0, k = 0; k < count; k++) {
         bool from_a = j == b->count || (i < a->count && a->value[i] <= b->value[j]);
         pooled->value[k] = from_a ? a->value[i] : b->value[j];
-        pooled->cluster[k] = from_a ? a->cluster[i++] : a->cluster_count + b->cluster[j++];
+        pooled->cluster[k] =
+            (uint32_t)(from_a ? a->cluster[i++] : a->cluster_count + b->cluster[j++]);
         pooled->group[k] = !from_a;
     }
     for (size_t k = 0; k < count; k++) {
@@ -58,7 +61,8 @@ cp_status cp_pooled_create(const cp_sample *a, const cp_sample *b, const size_t 
     return CP_OK;
 }
 
-/* The two samples of a resample: how much each observation of a cluster counts. */
+/* The two samples of a resample; how much each observation of a cluster counts stands in times of
+ * pooled. */
 typedef struct mix {
     const cp_pooled *pooled;
     const unsigned *weight[2];
@@ -66,12 +70,14 @@ typedef struct mix {
     double total[2];   /* of all that count */
 } mix;
 
-static double times(const mix *m, size_t k)
+static void fill_times(const mix *m)
 {
     const cp_pooled *p = m->pooled;
-    unsigned char g = p->group[k];
-    size_t c = p->cluster[k], own = g ? c - p->sample[0]->cluster_count : c;
-    return (m->weight[g] ? m->weight[g][own] : 1.0) * m->factor[g][p->stratum[c]];
+    size_t offset[2] = {0, p->sample[0]->cluster_count};
+    for (int g = 0; g < 2; g++)
+        for (size_t c = 0; c < p->sample[g]->cluster_count; c++)
+            p->times[offset[g] + c] =
+                (m->weight[g] ? m->weight[g][c] : 1.0) * m->factor[g][p->stratum[offset[g] + c]];
 }
 
 static mix mix_of(const cp_pooled *p, const unsigned *weight_a, const unsigned *weight_b)
@@ -90,6 +96,7 @@ static mix mix_of(const cp_pooled *p, const unsigned *weight_a, const unsigned *
     }
     if (p->strata == 1) {
         m.factor[0][0] = m.factor[1][0] = m.total[0] > 0.0 && m.total[1] > 0.0;
+        fill_times(&m);
         return m;
     }
 
@@ -110,6 +117,7 @@ static mix mix_of(const cp_pooled *p, const unsigned *weight_a, const unsigned *
     }
     m.total[0] = compared[0];
     m.total[1] = compared[1];
+    fill_times(&m);
     return m;
 }
 
@@ -157,33 +165,73 @@ typedef struct figures {
     double censored;   /* weight of the others */
 } figures;
 
+/* One sample while its observations are walked up. */
+typedef struct climb {
+    picker median, p90;
+    double passed;
+    double wait; /* nothing is to be picked up to here */
+    figures of;
+} climb;
+
+static climb climb_for(double total)
+{
+    climb c = {.median = picker_for(total, 0.5),
+               .p90 = picker_for(total, 0.9),
+               .of = {{NAN, NAN, NAN}, 0.0, 0.0}};
+    c.wait = c.median.lower;
+    return c;
+}
+
+// Near the place of a quantile. Behind it is far from it: the slack is below 1 up to 10^9
+// observations.
+static void pick_both(climb *c, double count, double value)
+{
+    pick(&c->median, c->passed, count, value);
+    pick(&c->p90, c->passed, count, value);
+    if (c->passed > c->p90.lower + 3.0)
+        c->wait = INFINITY;
+    else if (c->passed > c->median.lower + 3.0)
+        c->wait = c->p90.lower;
+}
+
+// count observations of one value; none change nothing.
+static inline void climb_on(climb *c, double count, double value)
+{
+    if (!(count > 0.0))
+        return;
+    if (c->passed + count > c->wait)
+        pick_both(c, count, value);
+    c->passed += count;
+    if (isinf(value))
+        c->of.censored += count;
+    else
+        c->of.finite_sum += count * value;
+}
+
 static void walk(const mix *m, figures of[2])
 {
     const cp_pooled *p = m->pooled;
-    picker median[2] = {picker_for(m->total[0], 0.5), picker_for(m->total[1], 0.5)};
-    picker p90[2] = {picker_for(m->total[0], 0.9), picker_for(m->total[1], 0.9)};
-    double passed[2] = {0.0, 0.0};
-    of[0] = of[1] = (figures){{NAN, NAN, NAN}, 0.0, 0.0};
+    climb sample[2] = {climb_for(m->total[0]), climb_for(m->total[1])};
     for (size_t begin = 0, end; begin < p->count; begin = end) {
-        double tied[2] = {0.0, 0.0}, value = p->value[begin];
-        for (end = begin; end < p->count && p->value[end] == value; end++)
-            tied[p->group[end]] += times(m, end);
-        for (size_t g = 0; g < 2; g++) {
-            pick(&median[g], passed[g], tied[g], value);
-            pick(&p90[g], passed[g], tied[g], value);
-            passed[g] += tied[g];
-            if (isinf(value))
-                of[g].censored += tied[g];
-            else
-                of[g].finite_sum += tied[g] * value;
+        double value = p->value[begin];
+        end = begin + 1;
+        if (end == p->count || p->value[end] != value) {
+            climb_on(&sample[p->group[begin]], p->times[p->cluster[begin]], value);
+            continue;
         }
+        double tied[2] = {0.0, 0.0};
+        for (end = begin; end < p->count && p->value[end] == value; end++)
+            tied[p->group[end]] += p->times[p->cluster[end]];
+        climb_on(&sample[0], tied[0], value);
+        climb_on(&sample[1], tied[1], value);
     }
     for (size_t g = 0; g < 2; g++) {
+        of[g] = sample[g].of;
         if (m->total[g] <= 0.0)
             continue;
         of[g].value[CP_POOLED_MEAN] = of[g].censored > 0.0 ? NAN : of[g].finite_sum / m->total[g];
-        of[g].value[CP_POOLED_MEDIAN] = picked(&median[g]);
-        of[g].value[CP_POOLED_P90] = picked(&p90[g]);
+        of[g].value[CP_POOLED_MEDIAN] = picked(&sample[g].median);
+        of[g].value[CP_POOLED_P90] = picked(&sample[g].p90);
     }
 }
 
@@ -225,11 +273,12 @@ static double largest_distance(const mix *m, const double *centre, double *diffe
     double passed[2] = {0.0, 0.0}, largest = 0.0;
     for (size_t begin = 0, end; begin < p->count; begin = end) {
         for (end = begin; end < p->count && p->value[end] == p->value[begin]; end++)
-            passed[p->group[end]] += times(m, end);
+            passed[p->group[end]] += p->times[p->cluster[end]];
         double apart = passed[1] / m->total[1] - passed[0] / m->total[0];
         for (size_t k = begin; difference && k < end; k++)
             difference[k] = apart;
-        largest = fmax(largest, fabs(apart - (centre ? centre[begin] : 0.0)));
+        double off = fabs(apart - (centre ? centre[begin] : 0.0));
+        largest = off > largest ? off : largest;
     }
     return largest;
 }

@@ -6,6 +6,8 @@
 #include "stats/describe.h"
 #include "stats/sample.h"
 
+#include <stdint.h>
+
 /* Two samples in one ascending order, so that one walk gives every figure of a resample.
  *
  * Where their clusters come from several strata (scenarios), each sample is weighted so that both
@@ -16,12 +18,13 @@ typedef struct cp_pooled {
     const cp_sample *sample[2]; /* borrowed */
     size_t count;
     double *value;
-    size_t *cluster;      /* numbered through: those of sample 0, then those of sample 1 */
+    uint32_t *cluster;    /* numbered through: those of sample 0, then those of sample 1 */
     unsigned char *group; /* 0 or 1: the sample a value came from */
     double *size;         /* of each cluster, censored ones included */
     size_t strata;
     size_t *stratum;  /* of each cluster */
     double *factor;   /* room for the weight of an observation of each stratum of each sample */
+    double *times;    /* room for how much an observation of each cluster counts */
     double lowest[2]; /* smallest value of each sample that is not censored; NAN without */
 } cp_pooled;
 

@@ -340,6 +340,8 @@ class Report(unittest.TestCase):
                     self.assertEqual(self.card(variant, "frontal_crashes"), str(crashes))
                     self.assertEqual(self.card(variant, "frontal_vehicles"), str(vehicles))
                     seen.add(crashes)
+                words = self.browser.run("return document.body.innerText")
+                self.assertNotRegex(words, r"(?<![0-9.,\u2009 ])1 (frontal )?crashes\b")
                 points = self.browser.run("return document.querySelectorAll('#figure-scatter .point').length")
                 with_value = self.count("SELECT count(*) FROM frontal_vehicle WHERE olc_g IS NOT NULL "
                                         "AND (?1 = '' OR scenario = ?1) AND (?2 = '' OR crash_type = ?2)",

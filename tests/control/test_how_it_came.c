@@ -251,6 +251,10 @@ static void aeb_is_told_by_closed_form(void **unused)
     // Contact at 1 mm: the threshold is reached some microseconds later than of points.
     assert_near(act.requested_s, 2.847 - requested_s, 2e-4);
     assert_true(isnan(act.braking_s));
+    // While deceleration rises by 40 m/s^3: what was asked for the end of the step of the instant.
+    until(&own, 3.0);
+    act = function_at(own.controls, 0, 2.996, 20.0).act;
+    assert_near(act.brake_request_m_s2, 40.0 * (3.0 - brakes_s), 0.02);
     until(&own, 3.4);
     double speed_m_s = road.cars[0].state.speed_m_s;
     act = function_at(own.controls, 0, 3.4, speed_m_s).act;
@@ -286,6 +290,16 @@ static void what_is_over_is_told_for_a_while(void **unused)
     assert_int_equal(function_at(own.controls, 0, road.time_s, 15.0).act.state, CP_ACT_RELEASED);
     until(&own, 3.51 + CP_ACTS_MEMORY_S + 0.1);
     assert_int_equal(function_at(own.controls, 0, road.time_s, 15.0).act.state, CP_ACT_IDLE);
+
+    // Another warning is another act, with times of its own.
+    double from_s = road.time_s, speed_before_m_s = road.cars[0].state.speed_m_s;
+    road.cars[1].state.front_x_m = road.cars[0].state.front_x_m + 60.0;
+    road.cars[1].is_there = true;
+    until(&own, from_s + 3.8);
+    act = function_at(own.controls, 0, road.time_s, road.cars[0].state.speed_m_s).act;
+    assert_int_equal(act.state, CP_ACT_BRAKED);
+    assert_true(act.warned_s < 3.8 && act.braking_s < act.warned_s);
+    assert_near(act.speed_taken_off_m_s, speed_before_m_s - road.cars[0].state.speed_m_s, 1e-9);
     arrive(&own);
 }
 

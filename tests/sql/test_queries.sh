@@ -76,6 +76,9 @@ expect "vehicles with one reason of validity_reasons" "$(sum 4 validity_reasons)
     "$(one "SELECT count(*) FROM crash_vehicle WHERE frontal = 1 AND validity <> 'inside' AND instr(validity, ',') = 0")"
 expect "treatment crashes of paired_replications" "$(sum 6 paired_replications)" \
     "$(one "SELECT frontal_crashes FROM olc_by_variant WHERE variant = 'aeb'")"
+# Seeds find their partners by an index: twice as many pairs take twice as long, not four times.
+expect "partners of paired_replications are looked for" \
+    "$({ echo 'EXPLAIN QUERY PLAN'; cat "$queries/paired_replications.sql"; } | sqlite3 -readonly -batch "$db" | grep -Ec 'SEARCH (t|bs|ts) USING .*INDEX')" 3
 expect "pairs of counterfactual_pairs" "$(wc -l <"$seen/counterfactual_pairs.out" | tr -d ' ')" \
     "$(sqlite3 -readonly "$counterfactual" "SELECT count(*) FROM counterfactual AS x JOIN crash AS c ON c.id = x.crash_id
         WHERE x.outcome <> 'invalid' AND c.crash_type LIKE 'front-%' AND x.outcome_olc <> 'no_olc'")"

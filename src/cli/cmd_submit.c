@@ -202,6 +202,7 @@ static cp_status submit(const char *words, const char *script, char id[64], cp_e
     char command[3 * PATH_MAX];
     snprintf(command, sizeof command, "sbatch --parsable %s '%s'", words, script);
     fflush(stdout);
+    // NOLINTNEXTLINE(cert-env33-c): the words of --sbatch are for a shell, paths are checked
     FILE *pipe = popen(command, "r");
     if (pipe == NULL)
         return cp_fail(error, CP_IO_FAILED, "sbatch: %s", strerror(errno));

@@ -19,6 +19,7 @@ static int release_object(struct dl_phdr_info *object, size_t size, void *contex
         uintptr_t begin = (uintptr_t)(object->dlpi_addr + segment->p_vaddr);
         uintptr_t first = begin & ~(uintptr_t)(page - 1);
         size_t length = begin - first + segment->p_filesz;
+        // NOLINTNEXTLINE(performance-no-int-to-ptr): addresses are all that the linker tells
         if (madvise((void *)first, length, MADV_DONTNEED) == 0)
             *released += length;
     }

@@ -17,7 +17,7 @@
 
 extern char **environ;
 
-static const char *temporary_folder(void)
+const char *cp_scratch_folder(void)
 {
     const char *folder = getenv("TMPDIR");
     return folder != NULL && folder[0] != '\0' ? folder : "/tmp";
@@ -26,7 +26,7 @@ static const char *temporary_folder(void)
 FILE *cp_scratch_file(void)
 {
     char path[4096];
-    if (snprintf(path, sizeof path, "%s/crashpulse-XXXXXX", temporary_folder()) >=
+    if (snprintf(path, sizeof path, "%s/crashpulse-XXXXXX", cp_scratch_folder()) >=
         (int)sizeof path) {
         errno = ENAMETOOLONG;
         return NULL;
@@ -43,7 +43,7 @@ FILE *cp_scratch_file(void)
 
 cp_status cp_scratch_open(cp_scratch *scratch, cp_error *error)
 {
-    const char *folder = temporary_folder();
+    const char *folder = cp_scratch_folder();
     // Room behind it for the names of files.
     int length =
         snprintf(scratch->path, sizeof scratch->path - 256, "%s/crashpulse-XXXXXX", folder);

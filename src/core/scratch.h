@@ -33,6 +33,9 @@ CP_MUST_CHECK cp_status cp_scratch_read(const cp_scratch *scratch, const char *n
 CP_MUST_CHECK cp_status cp_scratch_run(const cp_scratch *scratch, const char *const word[],
                                        int *code, cp_error *error);
 
+/* Where temporary files go: $TMPDIR, or /tmp. */
+const char *cp_scratch_folder(void);
+
 /* A file without a name in $TMPDIR (or /tmp), for reading and writing; it is gone when closed. NULL
  * with errno when there can be none. */
 FILE *cp_scratch_file(void);

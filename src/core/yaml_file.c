@@ -149,8 +149,9 @@ size_t cp_yaml_line_of(const cp_yaml_file *file, const char *key_path)
     size_t best_length = 0, best_line = 1;
     for (size_t k = 0; k < file->line_count; k++) {
         size_t length = strlen(file->lines[k].path);
-        char next = strncmp(file->lines[k].path, key_path, length) == 0 ? key_path[length] : 'x';
-        if (length > best_length && (next == '\0' || next == '.' || next == '[')) {
+        bool begins = strncmp(file->lines[k].path, key_path, length) == 0;
+        char next = key_path[begins ? length : 0];
+        if (begins && length > best_length && (next == '\0' || next == '.' || next == '[')) {
             best_length = length;
             best_line = file->lines[k].line;
         }

@@ -56,6 +56,6 @@ const char *cp_shipped_vehicle_names(void)
 {
     // The text begins with the separator of every name.
 #define WORD(name) ", " #name
-    return SHIPPED(WORD) + 2;
+    return &SHIPPED(WORD)[2];
 #undef WORD
 }

@@ -231,7 +231,7 @@ cp_status cp_corridor_read(cp_store *store, const cp_study_data *data, cp_corrid
 {
     *pulses = (cp_corridor_pulses){0};
     double *chance = chances(data);
-    size_t room = 2 * CP_CORRIDOR_PULSES_MAX * (data->variant_count + 1);
+    size_t room = (size_t)2 * CP_CORRIDOR_PULSES_MAX * (data->variant_count + 1);
     size_t count = data->vehicle_count + data->treated_count;
     pulses->vehicle = calloc(room, sizeof *pulses->vehicle);
     pulses->g = calloc(room, sizeof *pulses->g);

@@ -2,12 +2,15 @@
 #include "run/background_request.h"
 
 #include "core/file.h"
+#include "core/scratch.h"
 #include "run/child.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #define PATH_SIZE 4096
@@ -65,14 +68,15 @@ static cp_status run_worker(const cp_background_request *request, const char *re
 cp_status cp_background_request_run(const cp_background_request *request, char **json,
                                     cp_error *error)
 {
-    const char *folder = getenv("TMPDIR");
     char path[PATH_SIZE];
     size_t size = 0;
     *json = NULL;
-    snprintf(path, sizeof path, "%s/crashpulse-background-XXXXXX", folder ? folder : "/tmp");
+    snprintf(path, sizeof path, "%s/crashpulse-background-XXXXXX", cp_scratch_folder());
     int file = mkstemp(path);
     if (file < 0)
-        return cp_fail(error, CP_IO_FAILED, "%s: cannot be created", path);
+        return cp_fail(error, CP_IO_FAILED,
+                       "%s: cannot be created: %s (TMPDIR names another folder)", path,
+                       strerror(errno));
     close(file);
     cp_status status = run_worker(request, path, error);
     if (status == CP_OK)

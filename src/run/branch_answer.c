@@ -122,8 +122,9 @@ bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *ans
         if ((size_t)(end - at) < sizeof(double))
             return false;
         at += sizeof(double);
-        if (take_text(&at, end) == NULL || take_text(&at, end) == NULL)
-            return false;
+        for (int vehicle = 0; vehicle < 2; vehicle++)
+            if (take_text(&at, end) == NULL)
+                return false;
     }
     return at == end;
 }

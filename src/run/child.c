@@ -117,11 +117,16 @@ cp_status cp_child_start(const char *program, const char *const *arguments, cp_c
     }
     if (failed == 0)
         return CP_OK;
-    if (child->messages != NULL)
+    bool has_file = child->messages != NULL;
+    if (has_file)
         fclose(child->messages);
     if (child->report >= 0)
         close(child->report);
     *child = (cp_child){0};
+    if (!has_file)
+        return cp_fail(error, CP_IO_FAILED,
+                       "%s: no temporary file can be made: %s (TMPDIR names another folder)",
+                       cp_scratch_folder(), strerror(failed));
     return cp_fail(error, CP_IO_FAILED, "%s: cannot be started: %s", program, strerror(failed));
 }
 

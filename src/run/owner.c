@@ -21,6 +21,7 @@ static bool read_process_start(int64_t pid, int64_t *process_start)
     if (field == NULL)
         return false;
     char state = '\0';
+    // NOLINTNEXTLINE(cert-err34-c): the kernel wrote these numbers
     int fields = sscanf(field,
                         ") %c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %*d %*d %*d "
                         "%*d %*d %*d %" SCNd64,

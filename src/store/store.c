@@ -183,7 +183,8 @@ cp_status cp_store_check_damage(cp_store *store, cp_error *error)
     if (found[0] == '\0' || strcmp(found, "ok") == 0)
         return status;
     for (char *c = found; *c != '\0'; c++)
-        *c = *c == '\n' ? ' ' : *c;
+        if (*c == '\n')
+            *c = ' ';
     return cp_fail(
         error, CP_STORE_FAILED,
         "%s: is damaged: %s; nothing was changed in it; 'crashpulse check' lists what is "

@@ -285,9 +285,9 @@ static cp_status compare_samples(const cp_statement *s, const cp_pulse *record, 
             stored.sample_interval_s == record->sample_interval_s;
     for (int c = 0; *same && c < CP_CHANNEL_COUNT; c++)
         for (size_t k = 0; *same && k < stored.sample_count; k++)
-            *same =
-                stored.channel[c][k] ==
-                llround(record->channel[c][k] / CP_PULSE_RESOLUTION[c]) * CP_PULSE_RESOLUTION[c];
+            *same = stored.channel[c][k] ==
+                    (double)llround(record->channel[c][k] / CP_PULSE_RESOLUTION[c]) *
+                        CP_PULSE_RESOLUTION[c];
     cp_pulse_destroy(&stored);
     return status;
 }

@@ -27,7 +27,9 @@ void cp_scenario_decode(char *name)
     char *to = name;
     for (const char *from = name; *from != '\0'; to++) {
         int code = *from == '%' ? hex_of(from + 1) : -1;
-        *to = code >= 0 ? (char)code : *from;
+        *to = *from;
+        if (code >= 0)
+            *to = (char)code;
         from += code >= 0 ? 3 : 1;
     }
     *to = '\0';

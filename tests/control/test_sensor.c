@@ -114,10 +114,10 @@ static void a_short_look_sees_what_a_long_one_does(void **unused)
         for (size_t k = 0; k < count; k++) {
             double x_m = (cp_rng_uniform(key, draw++) - 0.5) * 140.0;
             double y_m = (cp_rng_uniform(key, draw++) - 0.5) * (scene % 4 == 1 ? 4.0 : 140.0);
-            vehicle[k] = (cp_rectangle){{x_m, y_m},
-                                        2.0 * CP_PI * cp_rng_uniform(key, draw++),
-                                        3.0 + 15.0 * cp_rng_uniform(key, draw++),
-                                        1.5 + cp_rng_uniform(key, draw++)};
+            double yaw_rad = 2.0 * CP_PI * cp_rng_uniform(key, draw++);
+            double length_m = 3.0 + 15.0 * cp_rng_uniform(key, draw++);
+            double width_m = 1.5 + cp_rng_uniform(key, draw++);
+            vehicle[k] = (cp_rectangle){{x_m, y_m}, yaw_rad, length_m, width_m};
             screens[k] = &vehicle[k];
         }
         for (size_t k = 1; k < count; k++) {

@@ -2,37 +2,30 @@
 """Databases from strangers: what was put into the schema does not run and does not answer in place of
 ours, and whatever stands in the rows gives a result or a message, never the end by a signal, an
 endless run or another exit code. --samples N: so many cells of the matrix of rows; 0: all."""
-import argparse
 import os
 import pathlib
 import random
-import re
 import shutil
 import sqlite3
 import subprocess
 import sys
 import tempfile
 
-parser = argparse.ArgumentParser()
-parser.add_argument("--crashpulse", required=True)
-parser.add_argument("--db", required=True, help="a study's database")
-parser.add_argument("--samples", type=int, default=0)
+import hostile
+
+parser = hostile.parser(__doc__, "db", "samples")
 parser.add_argument("--few", action="store_true", help="of the commands on foreign schemas some")
 a = parser.parse_args()
 
-LIST = ("id,vehicle_a,vehicle_b,speed_a_km_h,speed_b_km_h,offset_mm,angle_deg\n"
-        "one,van,suv,50,40,0,0\ntwo,suv,van,30,60,300,10\n")
+LIST = hostile.LIST + "two,suv,van,30,60,300,10\n"
 COMMANDS = (["compare"], ["status"], ["check"], ["report", "--output", "out.html"],
             ["plot", "olc", "--output", "out.svg"], ["sql", "SELECT * FROM olc_by_variant"],
             ["run", "study.yaml", "--db"], ["merge"], ["crash", "--crash", "1", "--from"])
 
 
-def run(folder, *words, expect=None, limit_s=60):
-    result = subprocess.run([a.crashpulse, *words], cwd=folder, capture_output=True, timeout=limit_s,
-                            env=dict(os.environ, TMPDIR=str(folder)))
-    if result.returncode != expect and expect is not None:
-        sys.exit(f"{words}: exit code {result.returncode}\n{result.stdout}{result.stderr}")
-    return result
+def run(folder, *words, expect=None):
+    return hostile.run(a.crashpulse, folder, *words, limit_s=60,
+                       expect=None if expect is None else (expect,))
 
 
 def change(path, sql):
@@ -175,7 +168,7 @@ with tempfile.TemporaryDirectory() as name:
                 sys.exit(f"{what}: no end in 60 s")
             if result.returncode not in (0, 1, 2):
                 sys.exit(f"{what}: exit code {result.returncode}: {result.stderr[-500:]}")
-            if result.returncode and not re.search(rb"crashpulse: error: .", result.stderr):
+            if result.returncode and not hostile.has_message(result.stderr.decode(errors="replace")):
                 sys.exit(f"{what}: no message: {result.stderr}")
             if result.returncode == 0 and b"\x1b" in result.stdout:
                 sys.exit(f"{what}: an escape sequence in {result.stdout}")

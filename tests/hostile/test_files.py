@@ -3,7 +3,6 @@
 with exit code 2, the file's name and the reason; what may be read either way gives a result or a
 reason; a byte order mark and line ends of Windows change nothing. Never a signal, an endless run,
 another file written or a message that acts on a terminal. --samples N: so many; 0: all."""
-import argparse
 import os
 import pathlib
 import random
@@ -14,11 +13,9 @@ import subprocess
 import sys
 import tempfile
 
-parser = argparse.ArgumentParser()
-parser.add_argument("--crashpulse", required=True)
-parser.add_argument("--network", required=True, help="folder of the crossing")
-parser.add_argument("--vehicles", required=True)
-parser.add_argument("--samples", type=int, default=0)
+import hostile
+
+parser = hostile.parser(__doc__, "network", "vehicles", "samples")
 parser.add_argument("--sanitized", action="store_true", help="no limit of address space")
 a = parser.parse_args()
 
@@ -53,48 +50,23 @@ def car(vehicles):
     return "\n".join(line for line in text.splitlines() if not line.startswith("#")) + "\n"
 
 
-STUDY = """study: files
-design: paired_seeds
-seed: 5
-replications: 2
-duration_s: 30
-warmup_s: 5
-scenarios:
-  - name: crossing
-    sumocfg: net/crossing.sumocfg
+STUDY = hostile.study(30, replications=2, more="warmup_s: 5\n", scenario="""\
     driver_errors:
       - {model: failed_to_see, parameters: {probability_1: 0.5}}
-variants:
-  - name: baseline
+""", variants="""\
   - {name: aeb, functions: [{function: aeb, parameters: {ttc_s: 1.2}}]}
 vehicles:
   default: car.yaml
 sweep:
   - {parameter: variants.aeb.aeb.ttc_s, values: [0.8, 1.2]}
-"""
-FIT = """fit: t
-base: car.yaml
-reference: reference.csv
-output: out.yaml
-algorithm: cmaes
-seed: 1
-population: 8
-generations: 1
-starts: 1
-slope_evaluations: 1
-local_evaluations: 1
-threads: 1
-unknowns:
-  - {name: friction_1, min: 0.05, max: 0.5}
-"""
+""")
 FILES = {
     "car.yaml": car(a.vehicles),
     "study.yaml": STUDY,
-    "fit.yaml": FIT,
+    "fit.yaml": hostile.fit(base="car.yaml"),
     "reference.csv": "speed_kmh,offset_mm,angle_deg,olc_fe_g\n56,0,0,23.9\n40,0,0,15.0\n",
     "pulse.csv": "",  # made by the program itself
-    "list.csv": "id,vehicle_a,vehicle_b,speed_a_km_h,speed_b_km_h,offset_mm,angle_deg\n"
-                "one,van,suv,50,40,0,0\ntwo,suv,van,40,50,200,10\n",
+    "list.csv": hostile.LIST + "two,suv,van,40,50,200,10\n",
     "collisions.xml": '<?xml version="1.0" encoding="UTF-8"?>\n<collisions>\n<collision time="4.90" '
                       'type="frontal" lane="e_0" pos="60" collider="a" victim="b" colliderType="car" '
                       'victimType="car" colliderSpeed="10" victimSpeed="10"/>\n</collisions>\n',
@@ -223,12 +195,7 @@ def limits():
 
 
 def run(folder, words):
-    return subprocess.run([a.crashpulse, *words], cwd=folder, capture_output=True, timeout=60,
-                          preexec_fn=limits, env=dict(os.environ, TMPDIR=str(folder)))
-
-
-def names(folder):
-    return sorted(str(p.relative_to(folder)) for p in folder.rglob("*"))
+    return hostile.run(a.crashpulse, folder, *words, limit_s=60, preexec_fn=limits)
 
 
 def judge(name, must, right, result):
@@ -240,7 +207,7 @@ def judge(name, must, right, result):
     allowed = (2,) if must == 2 else (0, 1, 2)
     if result.returncode not in allowed:
         return f"exit code {result.returncode}: {err[-600:]}"
-    if result.returncode and not re.search("crashpulse: error: .", err):
+    if result.returncode and not hostile.has_message(err):
         return f"no message: {err[-300:]}"
     # Where there is no EV5 file its folder is named.
     if must == 2 and name not in err and not (name == "t1.EV5" and ".EV5" in err):
@@ -277,15 +244,15 @@ with tempfile.TemporaryDirectory() as text:
             content(path)
         else:
             path.write_bytes(content)
-        before = names(folder)
+        before = hostile.names(folder)
         try:
             result = run(folder, words)
             fault = judge(name, must, right[name], result)
             refused += result.returncode == 2
         except subprocess.TimeoutExpired:
             fault = "no end in 60 s"
-        if fault is None and names(folder) != before:
-            fault = f"wrote {set(names(folder)) - set(before)}"
+        if fault is None and hostile.names(folder) != before:
+            fault = f"wrote {hostile.names(folder) - before}"
         tried += 1
         if fault:
             wrong += 1

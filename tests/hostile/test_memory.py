@@ -5,7 +5,6 @@ another number, half a file or a row of a database that is not the right one. --
 requests a command instead of all. --per-path N: of the requests that the same calls lead to (the innermost
 --depth of them), N spread over all, the first among them: most of a command's hundred thousands are such
 repetitions."""
-import argparse
 import array
 import collections
 import concurrent.futures
@@ -19,47 +18,18 @@ import subprocess
 import sys
 import tempfile
 
-STUDY = """study: memory
-design: paired_seeds
-seed: 5
-replications: 1
-duration_s: 12
-background: {duration_s: 5}
-scenarios:
-  - name: crossing
-    sumocfg: net/crossing.sumocfg
+import hostile
+
+STUDY = hostile.study(12, more="background: {duration_s: 5}\n", scenario="""\
     driver_errors:
       - {model: failed_to_see, parameters: {probability_1: 1}}
-variants:
-  - name: baseline
-  - {name: aeb, functions: [{function: aeb}]}
-"""
-FIT = """fit: t
-base: small_car.yaml
-reference: reference.csv
-output: fitted.yaml
-algorithm: cmaes
-seed: 1
-population: 8
-generations: 1
-starts: 1
-slope_evaluations: 1
-local_evaluations: 1
-threads: 1
-unknowns:
-  - {name: friction_1, min: 0.05, max: 0.5}
-  - {name: corner_gap_m, min: 0.05, max: 0.7}
-"""
-LIST = "id,vehicle_a,vehicle_b,speed_a_km_h,speed_b_km_h,offset_mm,angle_deg\none,van,suv,50,40,0,0\n"
+""", variants="  - {name: aeb, functions: [{function: aeb}]}\n")
+FIT = (hostile.fit(base="small_car.yaml", output="fitted.yaml")
+       + "  - {name: corner_gap_m, min: 0.05, max: 0.7}\n")
 REFERENCE = "speed_kmh,offset_mm,angle_deg,olc_fe_g\n56,0,0,23.9\n40,0,0,15.0\n25,0,0,9.0\n"
 
-parser = argparse.ArgumentParser()
-parser.add_argument("--crashpulse", required=True)
+parser = hostile.parser(__doc__, "db", "network", "vehicles", "samples")  # samples of each command
 parser.add_argument("--shim", required=True, help="failing_memory.so")
-parser.add_argument("--db", required=True, help="a study's database")
-parser.add_argument("--network", required=True, help="folder of the crossing")
-parser.add_argument("--vehicles", required=True)
-parser.add_argument("--samples", type=int, default=0, help="of each command's requests; 0: all")
 parser.add_argument("--per-path", type=int, default=0, help="of the requests that the same calls lead to")
 parser.add_argument("--depth", type=int, default=10, help="calls that make a path")
 parser.add_argument("--jobs", type=int, default=2)
@@ -116,7 +86,7 @@ def rows_of(path):
 def prepare(folder):
     (folder / "study.yaml").write_text(STUDY)
     (folder / "fit.yaml").write_text(FIT)
-    (folder / "list.csv").write_text(LIST)
+    (folder / "list.csv").write_text(hostile.LIST)
     (folder / "reference.csv").write_text(REFERENCE)
     shutil.copy(a.vehicles + "/small_car.yaml", folder)
     shutil.copytree(a.network, folder / "net")
@@ -157,19 +127,19 @@ def run(name, source, at=None, paths=None):
     with tempfile.TemporaryDirectory() as text:
         folder = pathlib.Path(text)
         shutil.copytree(source, folder, dirs_exist_ok=True)
-        before = {str(p.relative_to(folder)) for p in folder.rglob("*")}
+        before = hostile.names(folder)
         content = {n: (folder / n).read_bytes() for n in before if (folder / n).is_file()}
-        environment = dict(os.environ, LD_PRELOAD=a.shim, COUNT_FILE=str(folder / "count"),
-                           FAIL_IN=program, TMPDIR=text)
+        environment = dict(os.environ, LD_PRELOAD=a.shim, COUNT_FILE=str(folder / "count"), FAIL_IN=program)
         if at is not None:
             environment["FAIL_AT"] = str(at)
         if paths is not None:
             environment.update(PATHS_FILE=str(paths / "paths"), PATHS_DEPTH=str(a.depth))
         try:
             # At the same addresses in every process, so that their paths can be told to be the same.
-            fixed = ["setarch", "-R"] if paths else []
-            result = subprocess.run([*fixed, a.crashpulse, *words], cwd=folder, env=environment, timeout=120,
-                                    capture_output=True)
+            if paths:
+                result = hostile.run("setarch", folder, "-R", a.crashpulse, *words, environment=environment)
+            else:
+                result = hostile.run(a.crashpulse, folder, *words, environment=environment)
         except subprocess.TimeoutExpired:
             return "no end in 120 s", None, None, None, None
         count = folder / "count"
@@ -194,7 +164,7 @@ def judge(right, found, program):
     # SUMO does not tell want of memory from bad input.
     if code != 1 and not (code == 2 and program != "crashpulse"):
         return f"exit code {code}: {err[-200:]}"
-    if not re.search("^crashpulse: error: .", err, re.M) or "(null)" in err:
+    if not hostile.has_message(err):
         return f"exit code 1 without a message: {err[-200:]}"
     for name, content in files.items():
         same = content <= right[3].get(name, set()) if isinstance(content, set) else (

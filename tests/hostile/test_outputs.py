@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Outputs never replace what a command reads, a folder, a device, a pipe or a link, and a fit file
 writes beside itself or below only. All of it is said before any work begins."""
-import argparse
 import os
 import pathlib
 import shutil
@@ -10,50 +9,27 @@ import sys
 import tempfile
 import time
 
-parser = argparse.ArgumentParser()
-parser.add_argument("--crashpulse", required=True)
-parser.add_argument("--db", required=True, help="a study's database")
-parser.add_argument("--vehicles", required=True)
-a = parser.parse_args()
+import hostile
 
-FIT = """fit: t
-base: base.yaml
-reference: reference.csv
-output: {output}
-algorithm: cmaes
-seed: 1
-population: 100
-generations: 100000
-threads: 1
-unknowns:
-  - {{name: friction_1, min: 0.05, max: 0.5}}
-"""
+a = hostile.parser(__doc__, "db", "vehicles").parse_args()
 REFERENCE = "speed_kmh,offset_mm,angle_deg,olc_fe_g\n25,-350,10,8.42\n"
 PULSE = "time_s,ax_g\n" + "".join(f"{k / 1000},{-20 if k < 80 else 0}\n" for k in range(150))
 
 
-def state(folder):
-    found = {}
-    for path in sorted(folder.rglob("*")):
-        name = str(path.relative_to(folder))
-        if path.is_symlink():
-            found[name] = "-> " + os.readlink(path)
-        elif path.is_file():
-            found[name] = path.read_bytes()
-        else:
-            found[name] = "other"
-    return found
+def fit(output):
+    """One that would take hours."""
+    return hostile.fit(output=output, population=100, generations=100000)
 
 
 def refuse(folder, words, what):
     """Exit code 2 and the reason, soon, and nothing has changed."""
-    before, began = state(folder), time.monotonic()
+    before, began = hostile.state(folder), time.monotonic()
     result = subprocess.run([a.crashpulse, *words], cwd=folder, capture_output=True, text=True,
                             timeout=60)
     if result.returncode != 2 or what not in result.stderr or result.stdout:
         sys.exit(f"{words}: {result.returncode}\n{result.stdout}{result.stderr}")
-    if state(folder) != before:
-        sys.exit(f"{words}: changed {set(state(folder).items()) ^ set(before.items())}")
+    if hostile.state(folder) != before:
+        sys.exit(f"{words}: changed {set(hostile.state(folder).items()) ^ set(before.items())}")
     assert time.monotonic() - began < 20, words
     return 1
 
@@ -109,12 +85,12 @@ with tempfile.TemporaryDirectory() as name:
                          ("/tmp/out.yaml", "must be a file beside"),
                          ("away/out.yaml", "leads to /etc"), ("no/out.yaml", "is there"),
                          ('"a\\nb.yaml"', "single line"), ('"\\e[2J.yaml"', "control characters")):
-        (folder / "fit.yaml").write_text(FIT.format(output=output))
+        (folder / "fit.yaml").write_text(fit(output=output))
         count += refuse(folder, ["calibrate", "fit.yaml"], what)
-    (folder / "fit.yaml").write_text(FIT.format(output="out.yaml"))
+    (folder / "fit.yaml").write_text(fit(output="out.yaml"))
     count += refuse(folder, ["calibrate", "fit.yaml", "--output", "base.yaml"], read)
     count += refuse(folder, ["calibrate", "fit.yaml", "--output", "x.csv"], "must end in .yaml")
-    (folder / "fit.yaml").write_text(FIT.format(output="out.yaml").replace("fit: t", 'fit: "t\\nx: y"'))
+    (folder / "fit.yaml").write_text(fit(output="out.yaml").replace("fit: t", 'fit: "t\\nx: y"'))
     count += refuse(folder, ["calibrate", "fit.yaml"], "single line")
 
     # Nobody can have put the temporary file there: what used to be its name leads elsewhere.

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Names in files and databases never act: no command runs, no escape sequence or forged line reaches
 a terminal, no cell of a CSV is a formula, whatever the name and wherever it is shown."""
-import argparse
 import csv
 import io
 import json
@@ -13,10 +12,9 @@ import subprocess
 import sys
 import tempfile
 
-parser = argparse.ArgumentParser()
-parser.add_argument("--crashpulse", required=True)
-parser.add_argument("--db", required=True, help="a study's database")
-parser.add_argument("--network", required=True, help="folder of the crossing")
+import hostile
+
+parser = hostile.parser(__doc__, "db", "network")
 parser.add_argument("--few", action="store_true", help="every fourth name")
 a = parser.parse_args()
 
@@ -29,11 +27,7 @@ TEXTS = (("variant", "name"), ("scenario", "name"), ("study", "name"), ("risk_fu
 
 
 def run(folder, *words, expect=(0,)):
-    environment = dict(os.environ, TMPDIR=str(folder))
-    result = subprocess.run([a.crashpulse, *words], cwd=folder, capture_output=True, timeout=120,
-                            env=environment)
-    if result.returncode not in expect:
-        sys.exit(f"{words}: exit code {result.returncode}\n{result.stderr.decode(errors='replace')}")
+    result = hostile.run(a.crashpulse, folder, *words, expect=expect)
     if (folder / "owned").exists():
         sys.exit(f"{words}: a name was run")
     return result
@@ -42,9 +36,8 @@ def run(folder, *words, expect=(0,)):
 def check_terminal(words, out):
     """Neither controls nor lines that a name brought along."""
     text = out.decode("utf-8")
-    for c in text:
-        if (ord(c) < 32 and c not in "\n\t") or 0x7f <= ord(c) < 0xa0 or c == "\u202e":
-            sys.exit(f"{words}: control character {c!r} in {text!r}")
+    if hostile.control_characters(text):
+        sys.exit(f"{words}: control characters {hostile.control_characters(text)} in {text!r}")
     if any(line.startswith(("crashpulse: error: forged", "!touch")) for line in text.splitlines()):
         sys.exit(f"{words}: a forged line in {text!r}")
 
@@ -52,7 +45,7 @@ def check_terminal(words, out):
 shown = 0
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
-    for hostile in NAMES[::4] if a.few else NAMES:
+    for name_given in NAMES[::4] if a.few else NAMES:
         # One row of each table takes the name.
         shutil.copy(a.db, folder / "study.db")
         connection = sqlite3.connect(folder / "study.db")
@@ -60,14 +53,14 @@ with tempfile.TemporaryDirectory() as name:
         for table, column in TEXTS:
             key = "id" if table in ("variant", "scenario", "study") else "source"
             connection.execute(f"UPDATE {table} SET {column} = ? WHERE {key} = (SELECT max({key}) "
-                               f"FROM {table})", (hostile,))
+                               f"FROM {table})", (name_given,))
         connection.execute("UPDATE replication SET status='failed' WHERE id = (SELECT max(id) FROM "
                            "replication)")
         connection.commit()
         connection.close()
         for words in (["compare", "study.db"], ["status", "study.db"],
                       ["sql", "study.db", "SELECT name, level, source FROM risk_function"],
-                      ["compare", "study.db", "--baseline", hostile + "?"],
+                      ["compare", "study.db", "--baseline", name_given + "?"],
                       ["plot", "study.db", "olc", "--output", "f.svg"],
                       ["plot", "study.db", "benefit", "--output", "f.svg"],
                       ["report", "study.db", "--output", "f.html"]):
@@ -78,9 +71,9 @@ with tempfile.TemporaryDirectory() as name:
         # A table of texts as CSV and JSON: no formula; all bytes.
         out = run(folder, "sql", "study.db", "SELECT name, 1 FROM study", "-f", "csv").stdout.decode()
         cell = list(csv.reader(io.StringIO(out, newline="")))[1][0]
-        assert cell == ("'" + hostile if hostile[0] in "=+-@" else hostile), (cell, hostile)
+        assert cell == ("'" + name_given if name_given[0] in "=+-@" else name_given), (cell, name_given)
         out = run(folder, "sql", "study.db", "SELECT name FROM study", "-f", "json").stdout
-        assert json.loads(out)[0]["name"] == hostile
+        assert json.loads(out)[0]["name"] == name_given
         shown += 2
     # Numbers stay numbers.
     out = run(folder, "sql", "study.db", "SELECT -1.5, '-1.5', '-', '='", "-f", "csv").stdout.decode()
@@ -88,9 +81,7 @@ with tempfile.TemporaryDirectory() as name:
 
     # A study's names on the way to scripts of a cluster.
     shutil.copytree(a.network, folder / "net")
-    (folder / "study.yaml").write_text(
-        "study: s\ndesign: paired_seeds\nseed: 1\nreplications: 1\nduration_s: 10\nscenarios:\n"
-        "  - {name: crossing, sumocfg: net/crossing.sumocfg}\nvariants:\n  - name: baseline\n")
+    (folder / "study.yaml").write_text(hostile.study())
     for path in ("x\ntouch owned\n.db", "x\r.db", "x\x1b.db", "x'$(touch owned)'.db"):
         result = run(folder, "submit", "study.yaml", "--slurm", "--dry-run", "--db", path, expect=(2,))
         assert b"cannot be submitted" in result.stderr, result.stderr

@@ -29,7 +29,7 @@ typedef struct small_fleet {
 
 static void fill_fleet(small_fleet *f)
 {
-    *f = (small_fleet){.vehicles = {{NULL, NULL}, {"van", NULL}},
+    *f = (small_fleet){.vehicles = {{.type = NULL}, {.type = "van"}},
                        .models = {cp_vehicle_model_default(), cp_vehicle_model_default()}};
     strcpy(f->models[0].name, "car");
     strcpy(f->models[1].name, "van");

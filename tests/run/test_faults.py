@@ -266,6 +266,37 @@ def outputs_of_sumo(folder, study, undisturbed):
     assert not (mine / "net" / "trips.xml").exists()
 
 
+def read_only_tmp(folder, study, undisturbed):
+    # Nobody may write into /tmp and /var/tmp: TMPDIR is where everything goes.
+    with tempfile.TemporaryDirectory(dir=os.getcwd()) as text:
+        place = pathlib.Path(text)
+        mine = crossing_study.write(place, arguments.network, 1, 10)
+        (place / "own").mkdir()
+
+        def there(*words, expect=0, **more):
+            result = subprocess.run(
+                ["unshare", "-m", "sh", "-c", "mount -t tmpfs -o ro none /tmp && mount -t tmpfs -o ro "
+                 'none /var/tmp && exec "$@"', "sh", crashpulse, *map(str, words)], cwd=place,
+                env={**os.environ, **more}, capture_output=True, text=True)
+            assert result.returncode == expect, (words, result)
+            return result
+
+        own = {"TMPDIR": str(place / "own")}
+        db = place / "study.db"
+        there("run", mine, "--db", db, **own)
+        there("background", mine, "--duration", "5", **own)
+        shutil.copy(undisturbed, place / "many.db")
+        for words in (["compare", "many.db"], ["report", "many.db", "--output", "r.html"], ["check", db],
+                      ["plot", "many.db", "olc", "--output", "f.svg"], ["merge", "sum.db", db],
+                      ["sql", "many.db", "SELECT median(olc_g, censored) FROM frontal_vehicle"]):
+            there(*words, **own)
+        assert not list((place / "own").iterdir())
+        # Without one it is said where nothing can be written.
+        for words in (["run", mine, "--db", place / "new.db"], ["background", mine], ["plot", "many.db",
+                      "olc", "--output", "f.svg"]):
+            says(there(*words, expect=1, TMPDIR=""), "/tmp", "Read-only file system")
+
+
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     study = crossing_study.write(folder, arguments.network, replications=4, duration_s=20)
@@ -273,9 +304,9 @@ with tempfile.TemporaryDirectory() as name:
     run("run", study, "--db", undisturbed)
     cases = [newer_version, damaged, two_runs, shards, hanging_worker, interrupt, outputs_of_sumo]
     if can_mount(folder):
-        cases += [disk_full, read_only]
+        cases += [disk_full, read_only, read_only_tmp]
     else:
-        print("skipped: disk_full and read_only need the right to mount a file system")
+        print("skipped: disk_full, read_only and read_only_tmp need the right to mount a file system")
     for case in cases:
         if arguments.only and case.__name__ != arguments.only:
             continue

@@ -84,7 +84,8 @@ typedef struct cp_crash_result {
 
 /* Simulate. model_b is NULL against a barrier. The result is the caller's to destroy (also after
  * an error, when it is zeroed). Threads: call cp_crash_thread_begin/_end in each. Errors:
- * CP_NO_MEMORY, CP_CRASH_FAILED (a state that is not finite, with the time). */
+ * CP_NO_MEMORY, CP_CRASH_FAILED (a state that is not finite, or energy of more than 1 % and 10 J
+ * above that at first contact, with the time). */
 CP_MUST_CHECK cp_status cp_crash_simulate(const cp_vehicle_model *model_a,
                                           const cp_vehicle_model *model_b,
                                           const cp_crash_configuration *configuration,

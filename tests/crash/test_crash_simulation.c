@@ -343,6 +343,27 @@ static void coasting_goes_on_where_the_contact_ended(void **state)
     cp_crash_result_destroy(&result);
 }
 
+// Four parameters within their bounds that are together too stiff for the time step.
+static void a_gain_of_energy_is_no_result(void **state)
+{
+    (void)state;
+    cp_vehicle_model car = cp_vehicle_model_default();
+    cp_crash_result result;
+    cp_error error = {0};
+    snprintf(car.name, sizeof car.name, "stiff one");
+    car.engine_mass_kg = 50.0;
+    car.engine_mount_kn_m = 20000.0;
+    car.engine_mount_yield_kn = 300.0;
+    car.engine_mount_damping_kn_s_m = 50.0;
+    assert_int_equal(cp_vehicle_model_validate(&car, &error), CP_OK);
+    cp_crash_configuration at_wall = crash_builder_configuration(&car, NULL, 56.0, 0.0, 0.0, 0.0);
+    assert_int_equal(cp_crash_simulate(&car, NULL, &at_wall, &STANDARD, &result, &error),
+                     CP_CRASH_FAILED);
+    assert_non_null(strstr(error.text, "gained energy"));
+    assert_non_null(strstr(error.text, "stiff one"));
+    cp_crash_result_destroy(&result);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -359,6 +380,7 @@ int main(void)
         cmocka_unit_test(nothing_explodes),
         cmocka_unit_test(coasting_goes_on_where_the_contact_ended),
         cmocka_unit_test(a_bad_step_is_refused),
+        cmocka_unit_test(a_gain_of_energy_is_no_result),
     };
     return cmocka_run_group_tests(tests, crash_library_begin, crash_library_end);
 }

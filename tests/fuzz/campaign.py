@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 HEAD = """# Guided fuzzing
@@ -66,13 +67,15 @@ def fuzz(target):
             f"{(time.monotonic() - started_s) / 3600:.2f} | {branches} | {len(list(corpus.iterdir()))} | "
             f"{', '.join(p.name for p in new) or 'none'} |")
     print(line, flush=True)
-    return line, new
+    with writing:
+        text = a.log.read_text() if a.log.exists() else HEAD
+        a.log.write_text(text + line + "\n")
+    return new
 
 
+writing = threading.Lock()
 with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
     done = list(pool.map(fuzz, a.targets))
-text = a.log.read_text() if a.log.exists() else HEAD
-a.log.write_text(text + "".join(line + "\n" for line, _ in done))
-found = [str(path) for _, new in done for path in new]
+found = [str(path) for new in done for path in new]
 print(f"{len(a.targets)} targets, {len(found)} findings", *found, sep="\n")
 sys.exit(1 if found else 0)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/field_comparison.h"
+#include "report/field_page.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -305,6 +306,33 @@ static void words_tell_what_is_missing(void **state)
     end(&f);
 }
 
+// What a page lays under the study's delta-v.
+static void curves_of_the_page_are_the_field_s(void **state)
+{
+    (void)state;
+    json_t *page = json_object();
+    cp_error error = {0};
+    assert_int_equal(cp_field_page_add(page, &error), CP_OK);
+    const json_t *field = json_object_get(page, "field"),
+                 *curves = json_object_get(field, "curves");
+    static const char *const NAME[] = {"all", "front-front", "front-side", "front-rear"};
+    const int median[] = {17, 20, 16, 18}; // of the extract's README
+    for (size_t k = 0; k < 4; k++) {
+        const json_t *share = json_object_get(json_object_get(curves, NAME[k]), "share");
+        double before = 0.0;
+        assert_int_equal(json_array_size(share), json_array_size(json_object_get(field, "x")));
+        for (size_t i = 0; i < json_array_size(share); i++) {
+            double now = json_real_value(json_array_get(share, i));
+            assert_true(now >= before && now <= 1.0);
+            if (before < 0.5 && now >= 0.5)
+                assert_true(i == (size_t)median[k]);
+            before = now;
+        }
+        assert_true(before > 0.999);
+    }
+    json_decref(page);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -316,6 +344,7 @@ int main(void)
         cmocka_unit_test(weights_by_crash_type_agree_with_sums_by_hand),
         cmocka_unit_test(pairs_keep_the_weight_of_the_baseline),
         cmocka_unit_test(words_tell_what_is_missing),
+        cmocka_unit_test(curves_of_the_page_are_the_field_s),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-/* Above it the field has one vehicle in some ten thousand. */
-enum { KM_H_MOST = 120 };
+/* Above it the field has 7 vehicles in ten thousand. */
+enum { KM_H_MOST = 80 };
 
 // Share of the weight up to each whole km/h, of one crash type or of all (CP_FIELD_UNKNOWN).
 static json_t *curve_of(const cp_field_table *table, unsigned char type)

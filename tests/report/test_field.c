@@ -328,7 +328,7 @@ static void curves_of_the_page_are_the_field_s(void **state)
                 assert_true(i == (size_t)median[k]);
             before = now;
         }
-        assert_true(before > 0.999);
+        assert_true(before > 0.995);
     }
     json_decref(page);
 }

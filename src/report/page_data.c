@@ -8,6 +8,7 @@
 #include "report/caveats.h"
 #include "report/comparison_json.h"
 #include "report/example_query.h"
+#include "report/field_page.h"
 #include "report/gallery.h"
 #include "report/network.h"
 #include "report/network_background.h"
@@ -378,6 +379,8 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
         if (!*page)
             status = cp_fail_memory(error, "the data of a report");
     }
+    if (status == CP_OK)
+        status = cp_field_page_add(*page, error);
     json_decref(p.slices);
     json_decref(p.counts);
     json_decref(p.networks);

@@ -25,6 +25,8 @@ static const double PROBABILITY[CP_RAKED_QUANTILES] = {0.5, 0.9};
 typedef struct work {
     const cp_raked *raked;
     size_t strata;
+    double effective_clusters[2];
+    bool quantiles;    /* what is evaluated: these, or rates and ratios */
     size_t *cell[2];   /* of each unit */
     double *units;     /* of each cell, of the baseline's resample */
     double *of_cell;   /* weight */
@@ -163,9 +165,12 @@ static void evaluate(const unsigned *weight_a, const unsigned *weight_b, const v
     for (size_t k = 0; k < FIGURES; k++)
         value[k] = NAN;
     weigh(w, of_cluster);
-    sum_events(w, of_cluster);
-    take_rates(w, value);
-    take_quantiles(w, value);
+    if (w->quantiles) {
+        take_quantiles(w, value);
+    } else {
+        sum_events(w, of_cluster);
+        take_rates(w, value);
+    }
 }
 
 // ---- all of it -------------------------------------------------------------------------------
@@ -185,20 +190,25 @@ static bool event_too_few(const work *w, int g, size_t event)
     return there < CP_SAMPLE_CLUSTERS_MIN;
 }
 
+// Kish's number of clusters by the weight their severities have together.
+static double effective_clusters(const work *w, int g, double *room)
+{
+    const cp_raked_arm *arm = &w->raked->arm[g];
+    for (size_t c = 0; c < arm->cluster_count; c++)
+        room[c] = 0.0;
+    for (size_t k = 0; k < arm->severities; k++)
+        room[arm->cluster[k]] += w->weight[g][k];
+    return cp_weighted_effective(room, arm->cluster_count);
+}
+
 static bool quantile_too_few(const work *w, int g, int quantile)
 {
     const cp_raked_arm *arm = &w->raked->arm[g];
     double least =
         quantile == CP_RAKED_P90 ? CP_CONTRAST_P90_OBSERVATIONS_MIN : CP_SAMPLE_OBSERVATIONS_MIN;
-    size_t found[CP_SAMPLE_CLUSTERS_MIN], there = 0;
-    for (size_t k = 0; k < arm->severities && there < CP_SAMPLE_CLUSTERS_MIN; k++) {
-        bool known = !(w->weight[g][k] > 0.0);
-        for (size_t f = 0; f < there; f++)
-            known |= found[f] == arm->cluster[k];
-        if (!known)
-            found[there++] = arm->cluster[k];
-    }
-    return there < CP_SAMPLE_CLUSTERS_MIN ||
+    if (w->raked->raking)
+        least = g == 0 ? CP_RAKED_QUANTILE_EFFECTIVE_MIN : 0.5 * CP_RAKED_QUANTILE_EFFECTIVE_MIN;
+    return w->effective_clusters[g] < CP_SAMPLE_CLUSTERS_MIN ||
            cp_weighted_effective(w->weight[g], arm->severities) < least;
 }
 
@@ -238,6 +248,27 @@ static void give(const work *w, const double *value, const cp_interval *interval
     figures->factors = w->factors;
 }
 
+// The sample itself: its weights are what the rules for intervals look at.
+static cp_status look_at_sample(work *w, double *value, cp_error *error)
+{
+    double quantiles[FIGURES];
+    work *shared = w;
+    w->quantiles = true;
+    evaluate(NULL, NULL, &shared, quantiles);
+    w->quantiles = false;
+    evaluate(NULL, NULL, &shared, value);
+    for (size_t k = QUANTILES; k < FIGURES; k++)
+        value[k] = quantiles[k];
+    for (int g = 0; g < 2; g++) {
+        double *room = calloc(w->raked->arm[g].cluster_count + 1, sizeof *room);
+        if (!room)
+            return cp_fail_memory(error, "weighted crashes");
+        w->effective_clusters[g] = effective_clusters(w, g, room);
+        free(room);
+    }
+    return CP_OK;
+}
+
 cp_status cp_raked_of(const cp_raked *raked, const cp_resampling *resampling,
                       cp_raked_figures *figures, cp_error *error)
 {
@@ -245,13 +276,24 @@ cp_status cp_raked_of(const cp_raked *raked, const cp_resampling *resampling,
     work w;
     work *shared = &w;
     double value[FIGURES];
-    cp_interval interval[FIGURES];
+    cp_interval interval[FIGURES], of_quantiles[FIGURES];
     cp_status status = work_create(raked, &w, error);
     if (status == CP_OK)
+        status = look_at_sample(&w, value, error);
+    if (status == CP_OK)
         status = cp_bootstrap_many(resampling, evaluate, FIGURES, &shared, interval, error);
+
+    // Severities of few clusters: the same resamples with the reach of as many as count.
+    cp_resampling informed = *resampling;
+    for (int g = 0; g < 2 && status == CP_OK; g++)
+        informed.informative[g] = (size_t)w.effective_clusters[g];
+    w.quantiles = true;
+    if (status == CP_OK)
+        status = cp_bootstrap_many(&informed, evaluate, FIGURES, &shared, of_quantiles, error);
+    for (size_t k = QUANTILES; status == CP_OK && k < FIGURES; k++)
+        interval[k] = of_quantiles[k];
     if (status == CP_OK) {
-        // Last the sample itself: its weights are what the rules above look at.
-        evaluate(NULL, NULL, &shared, value);
+        status = look_at_sample(&w, value, error);
         give(&w, value, interval, figures);
     }
     work_destroy(&w);

@@ -63,11 +63,14 @@ typedef struct cp_raked_figures {
  * sample that small has none by chance pull every figure, by more than resamples show. */
 #define CP_RAKED_EFFECTIVE_MIN 40
 
-/* Effective numbers below which there is no interval of a quantile: CP_SAMPLE_OBSERVATIONS_MIN of
- * the median, CP_CONTRAST_P90_OBSERVATIONS_MIN of the 90 % quantile; and fewer than
- * CP_SAMPLE_CLUSTERS_MIN clusters with any event give none of a rate or ratio. Otherwise as
- * cp_bootstrap. resampling: clusters, strata, pairing, repetitions, seed; its counts must be those
- * of the arms. Error: CP_NO_MEMORY. */
+/* And fewer than this, of the treatment than half of it, none of a quantile of severity. */
+#define CP_RAKED_QUANTILE_EFFECTIVE_MIN 150
+
+/* Effective numbers below which there is no interval of a quantile without raking:
+ * CP_SAMPLE_OBSERVATIONS_MIN of the median, CP_CONTRAST_P90_OBSERVATIONS_MIN of the 90 % quantile;
+ * and fewer than CP_SAMPLE_CLUSTERS_MIN clusters with any event give none of a rate or ratio.
+ * Otherwise as cp_bootstrap. resampling: clusters, strata, pairing, repetitions, seed; its counts
+ * must be those of the arms. Error: CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_raked_of(const cp_raked *raked, const cp_resampling *resampling,
                                     cp_raked_figures *figures, cp_error *error);
 

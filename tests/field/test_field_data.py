@@ -106,5 +106,45 @@ class Risk(unittest.TestCase):
         self.assertEqual(dict(rows)["GIDAS"], "offered")
 
 
+class Rebound(unittest.TestCase):
+    def setUp(self):
+        self.db = sqlite3.connect(":memory:")
+        sqlite3.connect(DATABASE).backup(self.db)
+        self.crash, = self.db.execute("SELECT min(id) FROM crash WHERE crash_type = 'front-front'").fetchone()
+        self.db.execute("UPDATE crash SET closing_speed_m_s = 20 WHERE id = ?", [self.crash])
+
+    def change(self, role, delta_v, against, angle):
+        """delta_v: its size; against: between it and the relative velocity, which has this angle in
+        the car's axes."""
+        self.db.execute("UPDATE crash_vehicle SET delta_v_m_s = ?, delta_v_x_m_s = ?, delta_v_y_m_s = ?, "
+                        "velocity_angle_rad = ? WHERE crash_id = ? AND role = ?",
+                        [delta_v, delta_v * math.cos(angle + against), delta_v * math.sin(angle + against),
+                         angle, self.crash, role])
+
+    def seen(self):
+        return dict((role, (rebound, delta_v)) for role, rebound, delta_v in self.db.execute(
+            "SELECT role, rebound_1, delta_v_without_rebound_m_s FROM delta_v_without_rebound "
+            "WHERE crash_id = ?", [self.crash]))
+
+    def test_cars_that_spring_apart(self):
+        # Unlike masses, head-on but for the axes: 9 + 14 of 20 m/s are 15 % rebound.
+        self.change("a", 9.0, 0.0, 0.2)
+        self.change("b", 14.0, 0.0, -0.4)
+        for role, whole in (("a", 9.0), ("b", 14.0)):
+            rebound, delta_v = self.seen()[role]
+            self.assertAlmostEqual(rebound, 0.15, 12)
+            self.assertAlmostEqual(delta_v, whole / 1.15, 12)
+
+    def test_only_what_lies_along_the_relative_velocity_counts(self):
+        self.change("a", 12.0, 0.3, 0.0)
+        self.change("b", 12.0, 0.3, 1.0)
+        self.assertAlmostEqual(self.seen()["a"][0], 24.0 * math.cos(0.3) / 20.0 - 1.0, 12)
+
+    def test_cars_that_slide_past_have_none(self):
+        self.change("a", 6.0, 0.5, 0.0)
+        self.change("b", 6.0, 0.5, 0.0)
+        self.assertEqual(self.seen()["b"], (0.0, 6.0))
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-// How often intervals of weighted figures hold the truth. field_study [STUDIES [RESAMPLES]] prints
-// the table of field_study.md; `cmake --build build --target field_study` writes it.
+// How often intervals of weighted figures hold the truth. field_study [STUDIES [RESAMPLES [ROW]]]
+// prints the table of field_study.md; `cmake --build build --target field_study` writes it.
 #include "stats/field_study.h"
 
 int main(int argc, char **argv)
@@ -28,6 +28,8 @@ int main(int argc, char **argv)
     static const size_t REPLICATIONS[] = {20, 40, 100};
     static const double CRASHES[] = {3.0, 10.0};
     for (size_t cell = 0; cell < 24; cell++) {
+        if (argc > 3 && cell != strtoul(argv[3], NULL, 10))
+            continue;
         simulated_design d = {.replications = REPLICATIONS[cell / 8],
                               .mean_crashes = CRASHES[cell / 4 % 2],
                               .rho = cell / 2 % 2 ? 0.3 : 0.0,

@@ -184,8 +184,9 @@ static cp_status add_crash(const collision_view *view, const cp_impact *impact,
         names.type[role] = view->type[impact->vehicle[role]];
     }
     cp_crash_row *row = cp_result_rows_add_crash(results);
-    return row != NULL ? cp_crash_record_fill(impact, &names, view->fleet, row, error)
-                       : cp_fail_memory(error, "crash");
+    return row != NULL
+               ? cp_crash_record_fill(impact, &names, view->fleet, CP_RECORD_ALL, row, error)
+               : cp_fail_memory(error, "crash");
 }
 
 static cp_status add_contact(const collision_view *view, const cp_impact *impact,
@@ -555,7 +556,7 @@ static cp_status assess_row(const cp_configuration_list *list, size_t number, co
         return CP_OK;
     }
     cp_crash_row *crash = cp_result_rows_add_crash(results);
-    return crash != NULL ? cp_crash_record_facts(&facts, &names, cars, crash, error)
+    return crash != NULL ? cp_crash_record_facts(&facts, &names, cars, CP_RECORD_ALL, crash, error)
                          : cp_fail_memory(error, "crash");
 }
 

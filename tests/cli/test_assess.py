@@ -161,6 +161,13 @@ with tempfile.TemporaryDirectory() as name:
                                            (folder / "ours.coll.xml").read_text()))
     assert rows("--collisions", folder / "old.xml", *assess[2:]) == found
 
+    # A record of every fourth step: told, the times still those of SUMO's clock.
+    words = sumo("sparse", *OURS, "--precision", "9", "--device.fcd.period", "0.2")
+    result = run(crashpulse, "assess", *words, "--format", "csv")
+    assert "holds one step every 0.2 s, SUMO made more" in result.stderr, result.stderr
+    for crash, row in zip(csv.DictReader(result.stdout.splitlines()), ours[:6]):
+        assert crash["a"] == row[0] and abs(float(crash["time_s"]) - row[2]) < 0.02, (crash, row)
+
     # Steps of 1 s in which SUMO takes the two away: what stays known is as with action warn, the
     # rest is said not to be, and nothing is made of where a vehicle was put.
     coarse = {}

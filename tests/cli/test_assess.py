@@ -123,6 +123,16 @@ with tempfile.TemporaryDirectory() as name:
     refused = run(crashpulse, "assess", *defaults, "--db", folder / "assess.db", expect=2).stderr
     assert "assess.db: has results of another configuration" in refused, refused
 
+    # Whoever SUMO calls collider: the same crashes to the digit.
+    swapped = ElementTree.parse(folder / "ours.coll.xml")
+    for row in swapped.getroot():
+        for what in ("", "Type", "Speed"):
+            mine, yours = row.get("collider" + what), row.get("victim" + what)
+            row.set("collider" + what, yours)
+            row.set("victim" + what, mine)
+    swapped.write(folder / "swapped.xml")
+    assert rows("--collisions", folder / "swapped.xml", *assess[2:]) == found
+
     # Where SUMO says itself where the two were (from 1.24 on; put here into what 1.15 wrote): without
     # the record of all vehicles, with rows that last and with single ones.
     steps = {step.get("time"): {vehicle.get("id"): vehicle for vehicle in step}

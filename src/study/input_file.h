@@ -19,6 +19,8 @@ typedef struct cp_input_file {
     size_t value_count;
     char **types; /* ids of its vehicle types and distributions of them, where they are asked for */
     size_t type_count;
+    bool has_lights;   /* traffic lights */
+    bool has_opposite; /* lanes beside which the oncoming one may be used for overtaking */
 } cp_input_file;
 
 /* What to look for. */

@@ -23,7 +23,8 @@ typedef struct collision_view {
     const char *list_path;
     const cp_fleet *fleet;
     const cp_fcd_record *record;
-    double step_length_s;
+    double step_length_s;   /* of the record */
+    double sumo_step_s;     /* SUMO's own, where it is told to be shorter */
     const char *type_id[2]; /* the list's, else the record's */
     cp_sumo_type type[2];
     cp_vehicle_state *state[2];
@@ -189,8 +190,9 @@ static cp_status add_crash(const collision_view *view, const cp_impact *impact,
             names.lane[role] = view->record->lanes[impact->state[role].lane];
     }
     cp_crash_row *row = cp_result_rows_add_crash(results);
-    return row != NULL ? cp_crash_record_fill(impact, &names, view->fleet, row, error)
-                       : cp_fail_memory(error, "crash");
+    return row != NULL
+               ? cp_crash_record_fill(impact, &names, view->fleet, CP_RECORD_ALL, row, error)
+               : cp_fail_memory(error, "crash");
 }
 
 static cp_status add_contact(const collision_view *view, const cp_impact *impact,
@@ -216,7 +218,7 @@ static cp_status add_report(const collision_view *view, const char *found_as, do
     cp_sumo_collision_row *row = cp_result_rows_add_sumo_collision(results);
     if (row == NULL)
         return cp_fail_memory(error, "collision of SUMO");
-    row->time_s = view->listed->time_s + view->step_length_s;
+    row->time_s = view->listed->time_s + view->sumo_step_s;
     row->collider = strdup(view->listed->id[0]);
     row->victim = strdup(view->listed->id[1]);
     row->type = strdup(view->listed->kind);
@@ -297,7 +299,7 @@ static cp_status assess_one(collision_view *view, bool strict, cp_result_rows *r
         return status;
     bool is_missed = !contact.is_found || is_doubtful(view, &contact);
     // SUMO's files name a step by its beginning, its clock and we by its end.
-    contact.impact.time_s += view->step_length_s;
+    contact.impact.time_s += view->sumo_step_s;
     const char *found_as = "no_contact";
     int missing = view->track[0].count == 0 ? 0 : view->track[1].count == 0 ? 1 : -1;
     bool is_confirmed = contact.is_found && contact.impact.verdict == CP_CONTACT_CONFIRMED;
@@ -358,6 +360,13 @@ static cp_status check_seen(const cp_collision_list *list, const char *list_path
         list->collision[0].time_s);
 }
 
+// Times are written with two or three digits: what is about the record's step is that.
+static double sumo_step_of(const cp_collision_list *list, const cp_fcd_record *record)
+{
+    const double rounding_s = 0.011;
+    return list->step_s < record->step_length_s - rounding_s ? list->step_s : record->step_length_s;
+}
+
 cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_path,
                                cp_fcd_record *record, const cp_vtypes *types, const cp_fleet *fleet,
                                cp_assessment_keep keep, bool strict, cp_result_rows *results,
@@ -373,7 +382,8 @@ cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_p
                                .list_path = list_path,
                                .fleet = fleet,
                                .record = record,
-                               .step_length_s = record->step_length_s};
+                               .step_length_s = record->step_length_s,
+                               .sumo_step_s = sumo_step_of(list, record)};
         for (int role = 0; status == CP_OK && role < 2; role++)
             status = make_track(&view, &record->track[k][role], types, role, error);
         if (status == CP_OK && record->of_places)
@@ -577,7 +587,7 @@ static cp_status assess_row(const cp_configuration_list *list, size_t number, co
         return CP_OK;
     }
     cp_crash_row *crash = cp_result_rows_add_crash(results);
-    return crash != NULL ? cp_crash_record_facts(&facts, &names, cars, crash, error)
+    return crash != NULL ? cp_crash_record_facts(&facts, &names, cars, CP_RECORD_ALL, crash, error)
                          : cp_fail_memory(error, "crash");
 }
 

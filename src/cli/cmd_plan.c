@@ -5,6 +5,7 @@
 #include "core/safe_text.h"
 #include "run/fleet.h"
 #include "study/controls_text.h"
+#include "study/occasions.h"
 #include "study/plan.h"
 #include "study/scenario_outputs.h"
 #include "study/type_mapping.h"
@@ -329,6 +330,8 @@ cp_status cmd_plan(int argc, char **argv, cp_error *error)
         agrees = look_into_database(a.db_path, &p, &contradiction);
     if (status == CP_OK)
         status = print_plan(&p, &a, error);
+    if (status == CP_OK)
+        status = cp_study_tell_occasions(&p.study, error);
     if (status == CP_OK)
         status = cp_study_tell_options(&p.study, error);
     if (status == CP_OK && a.format == CP_FORMAT_TABLE)

@@ -18,7 +18,8 @@ typedef struct known_pair {
 
 typedef struct reading {
     cp_collision_list *list;
-    void *pairs; /* known_pairs, a binary tree */
+    void *pairs;   /* known_pairs, a binary tree */
+    double time_s; /* of the row before; NAN: none */
 } reading;
 
 static int compare_pairs(const void *one, const void *other)
@@ -189,6 +190,9 @@ static cp_status take_report(reading *self, cp_listed_collision *collision,
     cp_collision_list *list = self->list;
     size_t index = 0;
     list->reports++;
+    if (collision->time_s > self->time_s)
+        list->step_s = fmin(list->step_s, collision->time_s - self->time_s);
+    self->time_s = collision->time_s;
     if (strcmp(collision->id[0], collision->id[1]) == 0) {
         list->with_themselves++;
         return CP_OK;
@@ -242,8 +246,8 @@ static cp_status visit(void *context, const cp_xml_element *element, cp_error *e
 
 cp_status cp_sumo_collisions_read(const char *path, cp_collision_list *list, cp_error *error)
 {
-    *list = (cp_collision_list){0};
-    reading self = {.list = list};
+    *list = (cp_collision_list){.step_s = INFINITY};
+    reading self = {.list = list, .time_s = NAN};
     cp_status status = cp_xml_read(path, "collisions", visit, &self, error);
     while (self.pairs != NULL) {
         known_pair *pair = *(known_pair **)self.pairs;

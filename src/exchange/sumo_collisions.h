@@ -35,6 +35,8 @@ typedef struct cp_collision_list {
     size_t count;
     size_t reports;         /* in the file: SUMO repeats a collision that lasts */
     size_t without_places;  /* of them; 0: ways can be told without a record of all vehicles */
+    double step_s;          /* least time between two reports: SUMO's step where a collision lasts;
+                               INFINITY where all are of one time */
     size_t with_themselves; /* rows whose collider is the victim (trains in a loop): passed over */
 } cp_collision_list;
 

@@ -215,7 +215,8 @@ static void drop_sign_of_zero(cp_body_state *body)
 static cp_status simulate_if_possible(const cp_crash_facts *facts, const cp_impact_names *names,
                                       const cp_stand_in cars[2],
                                       const cp_crash_configuration *configuration,
-                                      cp_crash_row *row, cp_error *error)
+                                      cp_crash_record_extent extent, cp_crash_row *row,
+                                      cp_error *error)
 {
     cp_error failure = {0};
     if (cars[0].choice.model == NULL || cars[1].choice.model == NULL)
@@ -223,6 +224,8 @@ static cp_status simulate_if_possible(const cp_crash_facts *facts, const cp_impa
     cp_status status = simulate(cars, configuration, row, &failure);
     if (status == CP_NO_MEMORY)
         return cp_fail_memory(error, "crash simulation");
+    if (status == CP_OK && extent == CP_RECORD_PULSE)
+        return CP_OK;
     if (status == CP_OK)
         return simulate_ensemble(cars, configuration, row, error);
     cp_log_warning("crash of %s and %s at %.2f s cannot be simulated: %s", names->sumo_id[0],
@@ -235,7 +238,8 @@ static cp_status simulate_if_possible(const cp_crash_facts *facts, const cp_impa
 }
 
 cp_status cp_crash_record_facts(const cp_crash_facts *facts, const cp_impact_names *names,
-                                const cp_stand_in cars[2], cp_crash_row *row, cp_error *error)
+                                const cp_stand_in cars[2], cp_crash_record_extent extent,
+                                cp_crash_row *row, cp_error *error)
 {
     cp_crash_configuration configuration = facts->configuration;
     cp_status status = CP_OK;
@@ -250,7 +254,7 @@ cp_status cp_crash_record_facts(const cp_crash_facts *facts, const cp_impact_nam
     for (int role = 0; status == CP_OK && role < 2; role++)
         status = fill_vehicle(facts, names, cars, &configuration, role, row, error);
     if (status == CP_OK)
-        status = simulate_if_possible(facts, names, cars, &configuration, row, error);
+        status = simulate_if_possible(facts, names, cars, &configuration, extent, row, error);
     if (status != CP_OK)
         return status;
 
@@ -263,7 +267,8 @@ cp_status cp_crash_record_facts(const cp_crash_facts *facts, const cp_impact_nam
 }
 
 cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *names,
-                               const cp_fleet *fleet, cp_crash_row *row, cp_error *error)
+                               const cp_fleet *fleet, cp_crash_record_extent extent,
+                               cp_crash_row *row, cp_error *error)
 {
     cp_stand_in cars[2] = {0};
     cp_status status = CP_OK;
@@ -280,5 +285,42 @@ cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *n
         facts.length_m[role] = impact->state[role].length_m;
         facts.width_m[role] = impact->state[role].width_m;
     }
-    return cp_crash_record_facts(&facts, names, cars, row, error);
+    return cp_crash_record_facts(&facts, names, cars, extent, row, error);
+}
+
+cp_status cp_crash_record_repeat(const cp_crash_row *known, const cp_impact_names *names,
+                                 cp_crash_row *row, cp_error *error)
+{
+    *row = *known;
+    row->follows = CP_FOLLOWS_NONE;
+    row->history = NULL;
+    row->history_count = 0;
+    row->participants = (cp_participant_rows){0};
+    // All of the texts and pulses belong to one row only.
+    for (int role = 0; role < 2; role++) {
+        cp_crash_vehicle_row *vehicle = &row->vehicle[role];
+        vehicle->sumo_id = vehicle->sumo_type = vehicle->vehicle_model = NULL;
+        vehicle->lane = vehicle->edge = vehicle->junction = NULL;
+        vehicle->pulse = NULL;
+    }
+    for (int role = 0; role < 2; role++) {
+        const cp_crash_vehicle_row *from = &known->vehicle[role];
+        cp_crash_vehicle_row *vehicle = &row->vehicle[role];
+        vehicle->at_fault = names->at_fault[role];
+        vehicle->sumo_id = strdup(from->sumo_id);
+        vehicle->sumo_type = strdup(from->sumo_type);
+        vehicle->vehicle_model = strdup(from->vehicle_model);
+        if (from->pulse != NULL) {
+            vehicle->pulse = malloc(from->pulse_size);
+            if (vehicle->pulse != NULL)
+                memcpy(vehicle->pulse, from->pulse, from->pulse_size);
+        }
+        if (vehicle->sumo_id == NULL || vehicle->sumo_type == NULL ||
+            vehicle->vehicle_model == NULL || (from->pulse != NULL && vehicle->pulse == NULL))
+            return cp_fail_memory(error, "crash");
+        cp_status status = fill_place(names->lane[role], vehicle, error);
+        if (status != CP_OK)
+            return status;
+    }
+    return CP_OK;
 }

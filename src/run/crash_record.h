@@ -36,11 +36,18 @@ typedef struct cp_crash_facts {
     double width_m[2];
 } cp_crash_facts;
 
+/* How much of a crash is simulated. */
+typedef enum cp_crash_record_extent {
+    CP_RECORD_ALL,
+    CP_RECORD_PULSE /* not the parameter sets of the vehicle models' ensembles */
+} cp_crash_record_extent;
+
 /* Fill row, zeroed before, and simulate; as cp_crash_record_fill, of whose names it takes no types.
  */
 CP_MUST_CHECK cp_status cp_crash_record_facts(const cp_crash_facts *facts,
                                               const cp_impact_names *names,
-                                              const cp_stand_in cars[2], cp_crash_row *row,
+                                              const cp_stand_in cars[2],
+                                              cp_crash_record_extent extent, cp_crash_row *row,
                                               cp_error *error);
 
 /* Fill row, zeroed before; what it owns is freed by cp_result_rows_destroy. A crash the surrogate
@@ -48,7 +55,14 @@ CP_MUST_CHECK cp_status cp_crash_record_facts(const cp_crash_facts *facts,
  * and logged. Models cover SUMO's rectangles (cp_vehicle_model_cover). Errors: CP_NO_MEMORY;
  * CP_BAD_INPUT for a type that names an unknown model. */
 CP_MUST_CHECK cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *names,
-                                             const cp_fleet *fleet, cp_crash_row *row,
-                                             cp_error *error);
+                                             const cp_fleet *fleet, cp_crash_record_extent extent,
+                                             cp_crash_row *row, cp_error *error);
+
+/* Fill row, zeroed before, with what is known of the same crash: same vehicles and types, same
+ * impact to the bit, same earlier crashes. Only who errs is taken from names. Error: CP_NO_MEMORY.
+ */
+CP_MUST_CHECK cp_status cp_crash_record_repeat(const cp_crash_row *known,
+                                               const cp_impact_names *names, cp_crash_row *row,
+                                               cp_error *error);
 
 #endif

@@ -76,10 +76,24 @@ static bool is_same_pulse(const cp_crash_vehicle_row *one, const cp_crash_vehicl
            (one->pulse_size == 0 || memcmp(one->pulse, other->pulse, one->pulse_size) == 0);
 }
 
-static cp_status fill_crash(const cp_simulation *simulation, const cp_branch_answer *answer,
-                            const cp_fleet *fleet, cp_crash_row *row, cp_error *error)
+// The baseline's crash to the bit: what a treatment that did not act leaves.
+static bool is_the_baselines(const cp_pair *pair, const cp_branch_answer *answer)
 {
-    cp_impact_names names = {.sumocfg_path = simulation->sumocfg_path};
+    const cp_found_contact *baseline = &pair->simulation->found[pair->found];
+    bool is_same = impact_difference(&baseline->impact, &answer->found.impact) == NULL;
+    for (int role = 0; is_same && role < 2; role++)
+        is_same = strcmp(answer->ids[role], pair->ids[role]) == 0 &&
+                  strcmp(answer->types[role], pair->crash->vehicle[role].sumo_type) == 0 &&
+                  answer->found.had_crashed[role] == baseline->had_crashed[role];
+    return is_same;
+}
+
+// known: the same crash simulated before; NULL: none.
+static cp_status fill_crash(const cp_pair *pair, const cp_branch_answer *answer,
+                            cp_crash_record_extent extent, const cp_crash_row *known,
+                            cp_crash_row *row, cp_error *error)
+{
+    cp_impact_names names = {.sumocfg_path = pair->simulation->sumocfg_path};
     for (int role = 0; role < 2; role++) {
         names.sumo_id[role] = answer->ids[role];
         names.sumo_type[role] = answer->types[role];
@@ -88,7 +102,9 @@ static cp_status fill_crash(const cp_simulation *simulation, const cp_branch_ans
         names.had_crashed[role] = answer->found.had_crashed[role];
         names.lane[role] = answer->lanes[role];
     }
-    cp_status status = cp_crash_record_fill(&answer->found.impact, &names, fleet, row, error);
+    cp_status status = known != NULL ? cp_crash_record_repeat(known, &names, row, error)
+                                     : cp_crash_record_fill(&answer->found.impact, &names,
+                                                            pair->fleet, extent, row, error);
     return status == CP_OK ? cp_participant_rows_copy(&answer->found.participants,
                                                       answer->is_swapped, &row->participants, error)
                            : status;
@@ -129,7 +145,7 @@ static cp_status compare_null(const cp_pair *pair, const cp_branch_answer *answe
         return CP_OK;
     }
     cp_crash_row again = {0};
-    cp_status status = fill_crash(pair->simulation, answer, pair->fleet, &again, error);
+    cp_status status = fill_crash(pair, answer, CP_RECORD_PULSE, NULL, &again, error);
     if (status == CP_OK && is_same_pulse(&again.vehicle[0], &pair->crash->vehicle[0]) &&
         is_same_pulse(&again.vehicle[1], &pair->crash->vehicle[1]))
         row->status = CP_NULL_REPRODUCED;
@@ -246,7 +262,8 @@ static cp_status judge(const cp_pair *pair, cp_branch_answer *answer, cp_counter
     if (!answer->has_crash)
         return CP_OK;
     keep_roles(answer, pair->ids);
-    cp_status status = fill_crash(pair->simulation, answer, pair->fleet, &row->treated, error);
+    const cp_crash_row *known = is_the_baselines(pair, answer) ? pair->crash : NULL;
+    cp_status status = fill_crash(pair, answer, CP_RECORD_ALL, known, &row->treated, error);
     row->has_crash = status == CP_OK;
     row->outcome = row->outcome_olc = CP_OUTCOME_CHANGED_OPPONENT;
     if (status != CP_OK || !cp_branch_is_same_pair(answer->ids, pair->ids))

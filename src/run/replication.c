@@ -133,8 +133,8 @@ static cp_status record_crash(replication_run *run, const named_crash *named, cp
     cp_crash_row *row = cp_result_rows_add_crash(run->results);
     if (row == NULL)
         return cp_fail_memory(error, "crash");
-    cp_status status =
-        cp_crash_record_fill(&named->found->impact, &named->names, run->fleet, row, error);
+    cp_status status = cp_crash_record_fill(&named->found->impact, &named->names, run->fleet,
+                                            CP_RECORD_ALL, row, error);
     row->follows = number_of(simulation, named->found->follows);
     if (status == CP_OK)
         status =

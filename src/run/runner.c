@@ -12,6 +12,7 @@
 #include "store/claim.h"
 #include "store/query.h"
 #include "study/controls_text.h"
+#include "study/occasions.h"
 #include "study/scenario_outputs.h"
 #include "study/type_mapping.h"
 
@@ -537,7 +538,8 @@ static cp_status run_jobs(runner *run, cp_error *error)
 static cp_status tell_inputs(const cp_study *study, cp_error *error)
 {
     cp_controls_text_study(study, "crashpulse: ", stderr);
-    return cp_study_tell_options(study, error);
+    cp_status status = cp_study_tell_occasions(study, error);
+    return status == CP_OK ? cp_study_tell_options(study, error) : status;
 }
 
 static cp_status conclude(runner *run, cp_error *error)

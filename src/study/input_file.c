@@ -202,6 +202,8 @@ static cp_status inflate_file(const char *path, char **content, size_t *size, cp
 
 static cp_status look_inside(search *s, const char *content, size_t size, cp_error *error)
 {
+    s->file->has_lights = strstr(content, "<tlLogic") != NULL;
+    s->file->has_opposite = strstr(content, "<neigh") != NULL;
     static const cp_xml_visitor VISITOR = {look_at_element, NULL, NULL, look_at_entity};
     if (!is_worth_parsing(content, size, s->wanted))
         return CP_OK;

@@ -31,6 +31,8 @@ typedef struct cp_input_file {
     size_t type_count;
     cp_input_output *outputs; /* if looked for */
     size_t output_count;
+    bool has_lights;   /* traffic lights */
+    bool has_opposite; /* lanes beside which the oncoming one may be used for overtaking */
 } cp_input_file;
 
 /* What is looked for besides. */

@@ -100,3 +100,24 @@ cp_status cp_scenario_types_add(const cp_scenario_inputs *inputs, json_t *types,
     const cp_input_search search = {.types = true};
     return walk_inputs(inputs, &search, add_types, types, error);
 }
+
+// ---- occasions -----------------------------------------------------------------------------
+
+static cp_status note_occasions(const cp_input_file *file, const char *name, void *context,
+                                cp_error *error)
+{
+    cp_scenario_occasions *occasions = context;
+    (void)name;
+    (void)error;
+    occasions->has_lights |= file->has_lights;
+    occasions->has_opposite |= file->has_opposite;
+    return CP_OK;
+}
+
+cp_status cp_scenario_occasions_find(const cp_scenario_inputs *inputs,
+                                     cp_scenario_occasions *occasions, cp_error *error)
+{
+    *occasions = (cp_scenario_occasions){0};
+    walk w = {.visit = note_occasions, .context = occasions};
+    return walk_inputs(&w, inputs, error);
+}

@@ -5,6 +5,7 @@
 #include "core/error.h"
 
 #include <jansson.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 /* What a scenario consists of on disk: the .sumocfg, every file that it or the scenario's further
@@ -44,5 +45,16 @@ CP_MUST_CHECK cp_status cp_scenario_models(const cp_scenario_inputs *inputs,
  * above. */
 CP_MUST_CHECK cp_status cp_scenario_types_add(const cp_scenario_inputs *inputs, json_t *types,
                                               cp_error *error);
+
+/* What the networks among a scenario's files give drivers occasion for. */
+typedef struct cp_scenario_occasions {
+    bool has_lights;   /* traffic lights */
+    bool has_opposite; /* lanes beside which the oncoming one may be used for overtaking */
+} cp_scenario_occasions;
+
+/* Errors: as above. */
+CP_MUST_CHECK cp_status cp_scenario_occasions_find(const cp_scenario_inputs *inputs,
+                                                   cp_scenario_occasions *occasions,
+                                                   cp_error *error);
 
 #endif

@@ -130,6 +130,16 @@ with tempfile.TemporaryDirectory() as name:
     refused = run(crashpulse, "assess", *defaults, "--db", folder / "assess.db", expect=2).stderr
     assert "assess.db: has results of another configuration" in refused, refused
 
+    # Whoever SUMO calls collider: the same crashes to the digit.
+    swapped = ElementTree.parse(folder / "ours.coll.xml")
+    for row in swapped.getroot():
+        for what in ("", "Type", "Speed"):
+            mine, yours = row.get("collider" + what), row.get("victim" + what)
+            row.set("collider" + what, yours)
+            row.set("victim" + what, mine)
+    swapped.write(folder / "swapped.xml")
+    assert rows("--collisions", folder / "swapped.xml", *assess[2:]) == found
+
     # Where SUMO says itself where the two were (from 1.24 on; put here into what 1.15 wrote): without
     # the record of all vehicles, with rows that last and with single ones.
     steps = {step.get("time"): {vehicle.get("id"): vehicle for vehicle in step}
@@ -167,6 +177,13 @@ with tempfile.TemporaryDirectory() as name:
     (folder / "old.xml").write_text(re.sub(r' (collider|victim)Type="[^"]*"', "",
                                            (folder / "ours.coll.xml").read_text()))
     assert rows("--collisions", folder / "old.xml", *assess[2:]) == found
+
+    # A record of every fourth step: told, the times still those of SUMO's clock.
+    words = sumo("sparse", *OURS, "--precision", "9", "--device.fcd.period", "0.2")
+    result = run(crashpulse, "assess", *words, "--format", "csv")
+    assert "holds one step every 0.2 s, SUMO made more" in result.stderr, result.stderr
+    for crash, row in zip(csv.DictReader(result.stdout.splitlines()), ours[:6]):
+        assert crash["a"] == row[0] and abs(float(crash["time_s"]) - row[2]) < 0.02, (crash, row)
 
     # Steps of 1 s in which SUMO takes the two away: what stays known is as with action warn, the
     # rest is said not to be, and nothing is made of where a vehicle was put.

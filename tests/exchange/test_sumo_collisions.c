@@ -32,6 +32,7 @@ static void a_pair_is_listed_once_at_its_first_report(void **unused)
         fail_msg("%s", error.text);
     assert_int_equal(list.count, 2);
     assert_int_equal(list.reports, 3);
+    assert_true(fabs(list.step_s - 0.05) < 1e-12);
     const cp_listed_collision *first = &list.collision[0];
     assert_int_equal(first->line, 4);
     assert_true(first->time_s == 20.55);

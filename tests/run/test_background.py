@@ -146,6 +146,22 @@ def short(folder):
     assert seeds == [row[0] for row in query(db, "SELECT DISTINCT seed FROM replication ORDER BY 1")]
 
 
+def without_occasion(folder):
+    # Errors that a network gives no occasion for are told before anything is run.
+    study = crossing_study.write(folder, arguments.network, 1, 10)
+    study.write_text(study.read_text().replace(
+        "    driver_errors:\n", "    driver_errors:\n      - {model: red_light}\n"
+        "      - {model: risky_overtaking}\n"))
+    told = run("plan", study).stderr
+    assert "scenario crossing: risky_overtaking cannot act: no lane of the network may overtake" in told, told
+    lights = "tlLogic" in (folder / "net/crossing.net.xml").read_text()
+    assert ("red_light cannot act: the network has no traffic light" in told) != lights, told
+    net = folder / "net/crossing.net.xml"
+    net.write_text(net.read_text().replace("</net>", '<tlLogic id="t"/><!-- no <neigh lane="x"/> --></net>'))
+    told = run("plan", study).stderr
+    assert "red_light cannot act" not in told and "risky_overtaking cannot act" in told, told
+
+
 def failing(folder):
     # A vehicle on an edge that is not there, which SUMO reads when the replications are over.
     study, db = crossing_study.write(folder, arguments.network, 1, 20,
@@ -172,7 +188,7 @@ def failing(folder):
 
 
 with tempfile.TemporaryDirectory() as name:
-    for case in (careful, careless, short, failing):
+    for case in (careful, careless, short, without_occasion, failing):
         folder = pathlib.Path(name) / case.__name__
         folder.mkdir()
         case(folder)

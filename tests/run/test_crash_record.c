@@ -75,7 +75,8 @@ static void record_as(const cp_impact *impact, const char *type_of_b, cp_result_
     fill_fleet(&f);
     cp_crash_row *row = cp_result_rows_add_crash(rows);
     assert_non_null(row);
-    assert_int_equal(cp_crash_record_fill(impact, &names, &f.fleet, row, &error), CP_OK);
+    assert_int_equal(cp_crash_record_fill(impact, &names, &f.fleet, CP_RECORD_ALL, row, &error),
+                     CP_OK);
 }
 
 static void record(const cp_impact *impact, cp_result_rows *rows)
@@ -143,6 +144,36 @@ static void crash_without_simulation_is_kept(void **state)
         assert_true(vehicle->speed_m_s == 15.0);
         assert_true((vehicle->outside & CP_OUTSIDE_NO_CONTACT) != 0);
     }
+    cp_result_rows_destroy(&rows);
+}
+
+// What is known of the same crash is what simulating it again gives; who errs is the new one's.
+static void a_repeated_crash_is_the_known_one(void **state)
+{
+    (void)state;
+    cp_result_rows rows = {0};
+    cp_crash_row again = {0};
+    cp_error error = {0};
+    cp_impact impact = head_on(0.3);
+    record(&impact, &rows);
+    record(&impact, &rows);
+    cp_impact_names names = names_of("van");
+    names.at_fault[0] = false;
+    names.at_fault[1] = true;
+    assert_int_equal(cp_crash_record_repeat(&rows.crash[0], &names, &again, &error), CP_OK);
+    assert_true(again.shift_m == rows.crash[1].shift_m && again.follows == CP_FOLLOWS_NONE);
+    for (int role = 0; role < 2; role++) {
+        const cp_crash_vehicle_row *one = &again.vehicle[role];
+        const cp_crash_vehicle_row *other = &rows.crash[1].vehicle[role];
+        assert_int_equal(one->at_fault, role == 1);
+        assert_string_equal(one->sumo_id, other->sumo_id);
+        assert_true(one->pulse != rows.crash[0].vehicle[role].pulse);
+        assert_int_equal(one->pulse_size, other->pulse_size);
+        assert_memory_equal(one->pulse, other->pulse, one->pulse_size);
+        assert_true(one->severity.olc.olc_g == other->severity.olc.olc_g);
+        assert_int_equal(one->outside, other->outside);
+    }
+    cp_crash_row_destroy(&again);
     cp_result_rows_destroy(&rows);
 }
 
@@ -269,6 +300,7 @@ int main(void)
         cmocka_unit_test(olc_is_for_struck_fronts_only),
         cmocka_unit_test(crash_without_simulation_is_kept),
         cmocka_unit_test(vehicle_without_model_is_no_car),
+        cmocka_unit_test(a_repeated_crash_is_the_known_one),
         cmocka_unit_test(what_touches_in_traffic_touches_in_the_crash),
         cmocka_unit_test(every_crash_of_traffic_is_simulated),
     };

@@ -249,6 +249,8 @@ static void look_at(const maker *make, const task *work, size_t offset,
                                   .time_s = 1e-3 * one->time_ms,
                                   .side_1 = row->side_1,
                                   .mass_kg = {row->model[0].mass_kg, row->model[1].mass_kg},
+                                  .cell_mass_kg = {cp_vehicle_model_cell_mass(&row->model[0]),
+                                                   cp_vehicle_model_cell_mass(&row->model[1])},
                                   .wall = wall};
             values[place * CP_SUITE_OFFSETS_MAX + offset] = cp_suite_quantity_of(&look, result);
         }

@@ -112,8 +112,8 @@ double cp_suite_quantity_of(const cp_suite_look *look, const cp_crash_result *re
         return severity->olc.status == CP_OLC_VALUE ? severity->olc.olc_g : 0.0;
     case CP_SUITE_peak_g:
         return severity->peak_g;
-    case CP_SUITE_peak_force_kn:
-        return 1e-3 * severity->peak_g * CP_G0_M_S2 * look->mass_kg[c];
+    case CP_SUITE_cell_force_kn:
+        return 1e-3 * severity->peak_g * CP_G0_M_S2 * look->cell_mass_kg[c];
     case CP_SUITE_crush_mm:
         return crush_mm(pulse);
     case CP_SUITE_dvx_m_s:

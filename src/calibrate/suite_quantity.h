@@ -10,7 +10,7 @@
 #define CP_SUITE_QUANTITIES(X)                                                                     \
     X(olc_g, "g", "OLC", "occupant load criterion; 0 where it is left-censored")                   \
     X(peak_g, "g", "peak", "largest deceleration along x, CFC60")                                  \
-    X(peak_force_kn, "kN", "peak force", "the same times the car's mass")                          \
+    X(cell_force_kn, "kN", "force on the cell", "the same times the mass behind the firewall")     \
     X(crush_mm, "mm", "crush", "integral of v_x while it is positive, at most 300 ms")             \
     X(dvx_m_s, "m/s", "loss of v_x",                                                               \
       "loss of velocity along the car's x axis at an instant; the axes turn with "                 \
@@ -56,6 +56,7 @@ typedef struct cp_suite_look {
     double time_s; /* of a timed one */
     double side_1; /* +1: barrier to the left of car 0, -1: to the right */
     double mass_kg[2];
+    double cell_mass_kg[2];      /* cp_vehicle_model_cell_mass() */
     const cp_crash_result *wall; /* the same car against a wall, for wall_difference_pct */
 } cp_suite_look;
 

@@ -415,6 +415,13 @@ static double in_parallel(double one, double other)
     return one * other / (one + other);
 }
 
+double cp_vehicle_model_cell_mass(const cp_vehicle_model *model)
+{
+    double side_kg =
+        model->longitudinal_mass_kg + model->crash_box_mass_kg + model->cross_member_mass_kg;
+    return model->mass_kg - model->engine_mass_kg - 2.0 * side_kg;
+}
+
 double cp_vehicle_model_largest_step(const cp_vehicle_model *m, const char **element)
 {
     // Square of the fastest oscillation of every element between the masses it couples. A cross

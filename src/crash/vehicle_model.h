@@ -185,6 +185,9 @@ CP_MUST_CHECK cp_status cp_vehicle_model_parse(const char *name, const char *con
 cp_vehicle_model cp_vehicle_model_cover(const cp_vehicle_model *model, double length_m,
                                         double width_m);
 
+/* Mass of all behind the firewall: the car without engine, members, boxes and cross member. */
+double cp_vehicle_model_cell_mass(const cp_vehicle_model *model);
+
 /* The largest time step the explicit force elements of the model stand: their fastest oscillation
  * turns 1.2 rad in it. element (may be NULL) receives what sets it, static text. */
 double cp_vehicle_model_largest_step(const cp_vehicle_model *model, const char **element);

@@ -44,6 +44,7 @@ static void the_bodies_add_up_to_the_car(void **state)
     cp_body_state back = cp_car_cog_state(&car);
     assert_near(back.cog_m.x, 3.0, 1e-12);
     assert_near(back.cog_m.y, -2.0, 1e-12);
+    assert_near(car.mass_kg[CP_BODY_ROOT], cp_vehicle_model_cell_mass(&model), 1e-9);
     dWorldDestroy(world);
 }
 

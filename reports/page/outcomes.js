@@ -7,9 +7,9 @@ const OUTCOMES = ["avoided", "mitigated", "unchanged", "aggravated", "changed_op
 const OUTCOME_COLOUR = { avoided: "var(--v3)", mitigated: "var(--v1)", unchanged: "var(--v0)", aggravated: "var(--v2)", changed_opponent: "var(--v4)", invalid: "var(--line)" };
 
 // Crashes of others that the treatment brought about, and those it took away.
-function between(t) {
-  const parts = [[t.new_crashes, "new"], [t.vanished_crashes, "vanished"]].filter(p => p[0] > 0).map(p => crashes(p[0], p[1]));
-  return parts.length ? ` (${parts.join(" and ")} between others besides)` : "";
+function between(t, width) {
+  const parts = [[t.new_crashes, "new"], [t.vanished_crashes, "vanished"]].filter(p => p[0] > 0).map(p => width > 520 ? crashes(p[0], p[1]) : `${integer(p[0])} ${p[1]}`);
+  return parts.length ? ` (${parts.join(" and ")}${width > 520 ? " between others besides" : " besides"})` : "";
 }
 
 const flowFigure = data.study.design !== "counterfactual" ? null : figure("figure-flow", "What became of the baseline’s frontal crashes",
@@ -18,7 +18,7 @@ const flowFigure = data.study.design !== "counterfactual" ? null : figure("figur
     const treatments = shownPairs(), panel = 250, left = 92, right = Math.min(290, Math.max(185, 0.52 * width));
     treatments.forEach((t, place) => {
       const g = svg.append("g").attr("transform", `translate(0,${place * panel + 22})`), height = panel - 60, scale = (height - 50) / Math.max(1, t.crashes);
-      g.append("text").attr("x", 4).attr("y", -6).style("font-weight", 600).text(t.variant + between(t));
+      g.append("text").attr("x", 4).attr("y", -6).style("font-weight", 600).text(t.variant + between(t, width));
       g.append("rect").attr("x", left - 14).attr("width", 14).attr("height", Math.max(1, t.crashes * scale)).style("fill", "var(--v0)");
       g.append("text").attr("x", left - 20).attr("y", t.crashes * scale / 2).attr("text-anchor", "end").text(crashes(t.crashes));
       let from = 0, to = 0;
@@ -29,7 +29,7 @@ const flowFigure = data.study.design !== "counterfactual" ? null : figure("figur
           .style("fill", OUTCOME_COLOUR[o]).style("opacity", 0.45).append("title").text(`${readable(o)}: ${n}`);
         g.append("rect").attr("x", x1).attr("y", to).attr("width", 10).attr("height", Math.max(1, h)).style("fill", OUTCOME_COLOUR[o]);
         const words = g.append("text").attr("x", x1 + 16).attr("y", to + Math.max(h / 2, 4) + 4);
-        words.append("tspan").style("font-weight", 600).text(`${readable(o)} ${n}${o === "aggravated" ? ` (by OLC ${t.outcomes_by_olc[o]})` : ""}`);
+        words.append("tspan").style("font-weight", 600).text(`${readable(o)} ${n}${o === "aggravated" && width > 520 ? ` (by OLC ${t.outcomes_by_olc[o]})` : ""}`);
         if (o !== "invalid") words.append("tspan").attr("class", "soft").text(`  ${percent(n / t.valid)}${share && share.status === "value" && width > 520 ? ` (${interval(share, percent)})` : ""}`);
         from += h;
         to += Math.max(h, 16) + 4;

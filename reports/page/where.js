@@ -12,8 +12,7 @@ const speedColour = d3.scaleSequential(d3.interpolateViridis).domain([130, 0]).c
 const mapFigure = figure("figure-map", "Crash configurations",
   () => "Frontal crashes by lateral offset of the opponent and angle (0° = exactly oncoming, ±90° = crossing), seen from the vehicle struck on its front; colour: closing speed. Filled: that vehicle is inside the validated range." + treatedText() + thinned(),
   function (svg, width) {
-    // Treatments of counterfactual pairs were not run: their crashes are no zero.
-    const rows = mapRows(), variants = shownVariants().map(v => indexOf(v.variant)), count = variants.length;
+    const rows = mapRows(), variants = data.variants.map((v, k) => k).filter(k => state.variants.has(k)), count = variants.length;
     const legendWidth = Math.min(220, width - 120), bar = svg.append("g").attr("transform", "translate(56,4)");
     d3.range(0, 44).forEach(k => bar.append("rect").attr("x", legendWidth * k / 44).attr("width", legendWidth / 44 + 0.5).attr("height", 8).style("fill", speedColour(130 * k / 43)));
     [0, 65, 130].forEach(v => bar.append("text").attr("x", legendWidth * v / 130).attr("y", 22).attr("text-anchor", "middle").text(v === 130 ? "≥ 130 km/h" : v));

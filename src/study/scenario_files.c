@@ -118,6 +118,6 @@ cp_status cp_scenario_occasions_find(const cp_scenario_inputs *inputs,
                                      cp_scenario_occasions *occasions, cp_error *error)
 {
     *occasions = (cp_scenario_occasions){0};
-    walk w = {.visit = note_occasions, .context = occasions};
-    return walk_inputs(&w, inputs, error);
+    const cp_input_search nothing = {0};
+    return walk_inputs(inputs, &nothing, note_occasions, occasions, error);
 }

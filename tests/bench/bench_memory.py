@@ -97,7 +97,8 @@ def run_all(folder):
     """The three programs at the same time. SUMO's options are those of a short run of ours."""
     (folder / "short").mkdir()
     (folder / "short/study.yaml").write_text(study(1))
-    run = [arguments.build / "crashpulse", "run", "study.yaml", "--db", "study.db", "--jobs", "1"]
+    run = [arguments.build / "crashpulse", "run", "study.yaml", "--db", "study.db", "--jobs", "1",
+           "--allow-sumo-outputs"]  # the summary lies beside the study, not beside the .sumocfg
     subprocess.run(run, cwd=folder / "short", check=True, env=environment, stdout=subprocess.DEVNULL,
                    stderr=subprocess.DEVNULL)
     words = shlex.split(sqlite3.connect(folder / "short/study.db").execute(

@@ -11,7 +11,7 @@ static void write_routes(const crossing_runs *f)
     size_t used = (size_t)snprintf(
         text, sizeof text,
         "<routes><vType id=\"car\" length=\"4.5\" width=\"1.8\" tau=\"0.5\" minGap=\"1\" "
-        "decel=\"3\" emergencyDecel=\"3\" sigma=\"0\" speedFactor=\"1\"/>\n"
+        "decel=\"3\" emergencyDecel=\"3\" sigma=\"0\" speedFactor=\"1\"/><vType id=\"van\"/>\n"
         "<route id=\"through\" edges=\"west_in east_out\"/>\n"
         "<route id=\"left\" edges=\"east_in south_out\"/>\n");
     for (int k = 0; k < 36; k++) {

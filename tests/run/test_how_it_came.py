@@ -165,10 +165,14 @@ def check_functions(connection):
         if begin_s < samples[0][0]:
             continue
         # The car's speed at the end of the last step before its braking, by its recorded way; the speed
-        # of a drifting car at contact is that along its axis, a little less than SUMO's.
+        # of a drifting car at contact is that along its axis, less than SUMO's as it is turned, up to 30
+        # degrees when it is slow.
         before = [s for s in samples if s[0] < begin_s - 1e-6][-1]
         if begin_s - before[0] < 0.05 - 1e-6:
-            assert math.isclose(taken, before[1] - speed, abs_tol=0.05), (crash, role, function)
+            drifts = connection.execute("SELECT count(*) FROM crash_driver_error WHERE crash_id = ? AND role = ? AND "
+                                        "driver_error = 'lane_drift'", (crash, role)).fetchone()[0] > 0
+            along_m_s = speed * (1.0 / math.cos(math.radians(30.0)) - 1.0) if drifts else 0.0
+            assert -0.05 <= before[1] - speed - taken <= 0.05 + along_m_s, (crash, role, function)
             exact += math.isclose(taken, before[1] - speed, abs_tol=1e-9)
         # The largest deceleration of whole steps since; the step of contact comes on top.
         steps = [-s[2] for s in samples if s[0] > before[0] + 1e-9]

@@ -188,7 +188,7 @@ with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     write_study(folder)
     with open(folder / "errors.txt", "w+") as errors:
-        runner = subprocess.Popen([arguments.build / "crashpulse", "run", "study.yaml", "--db", "study.db",
+        runner = subprocess.Popen([arguments.build / "crashpulse", "run", "study.yaml", "--db", "study.db", "--allow-sumo-outputs",
                                    "--jobs", "2"], cwd=folder, stdout=subprocess.DEVNULL, stderr=errors,
                                   env={**os.environ, "SUMO_HOME": "/usr/share/sumo"})
         samples = watch(folder, runner)

@@ -55,7 +55,9 @@ function drawDistributions(svg, width, what, xTitle, unit) {
 }
 
 function distributionContent(what, column) {
-  const rows = d3.merge(under(what).map(c => c.x.map((value, k) => [c.label, value, c.share[k], null, null])));
+  // Of what lies under them some twenty points.
+  const some = c => c.x.map((value, k) => k).filter(k => k % Math.ceil(c.x.length / 20) === 0 || k === c.x.length - 1);
+  const rows = d3.merge(under(what).map(c => some(c).map(k => [c.label, c.x[k], c.share[k], null, null])));
   distributions(what).forEach(c => {
     const add = (value, share) => rows.push([c.name, value, share, c.half === null ? null : Math.max(0, share - c.half), c.half === null ? null : Math.min(1, share + c.half)]);
     if (c.censored) add(null, c.first);
@@ -77,7 +79,8 @@ const ecdfFigure = figure("figure-ecdf", "Distribution of OLC",
 
 const deltaVFigure = figure("figure-delta-v", "Distribution of delta-v",
   () => (judged() ? `Share of the crashes with a delta-v up to the value, ${judgedText()}${bandText("delta_v")}.`
-    : `Share of ${scopeText()} with a delta-v up to the value: the change of velocity over the whole crash, rebound included.`),
+    : `Share of ${scopeText()} with a delta-v up to the value: the change of velocity over the whole crash, rebound included.`)
+    + (under("delta_v").length ? " Broad grey: real crashes, vehicles struck on the front and towed away, without rebound." : ""),
   (svg, width) => drawDistributions(svg, width, "delta_v", "delta-v, km/h", "km/h"),
   () => distributionContent("delta_v", "delta_v_km_h"));
 

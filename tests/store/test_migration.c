@@ -227,7 +227,7 @@ static void risk_functions_of_users_stay(void **state)
     const fixture *f = *state;
     cp_store *store = NULL;
     cp_error error = {0};
-    make_version(f->db, 13);
+    make_version(f->db, 12);
     shell(
         "sqlite3 '%s' \"UPDATE risk_function SET coefficients = '[-4, 0.1]' WHERE name = "
         "'Malliaris' AND level = 'fatal'; INSERT INTO risk_function VALUES ('NASS-CDS', 'MAIS2+', "

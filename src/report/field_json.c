@@ -134,7 +134,7 @@ json_t *cp_field_contrast_json(const cp_study_data *data, const cp_field_contras
     const cp_raked_figures *f = field->figures;
     json_t *above = json_object(), *injured = json_array();
     for (int what = 0; what < CP_EXCEEDED_COUNT; what++) {
-        json_t *figure = ratio_json(field, (size_t)(CP_FIELD_ABOVE + what));
+        json_t *figure = ratio_json(field, (size_t)CP_FIELD_ABOVE + (size_t)what);
         json_object_set_new(figure, "x", cp_number_json(field->above[what]));
         json_object_set_new(above, CP_EXCEEDED_TEXT[what], figure);
     }

@@ -230,7 +230,7 @@ void cp_field_quantities_of_contrast(const cp_study_data *data, const cp_field_c
     for (int what = 0; what < CP_EXCEEDED_COUNT; what++) {
         double x = rounded(field->above[what] * ABOVE[what].factor);
         add_ratio(
-            list, field, (size_t)(CP_FIELD_ABOVE + what),
+            list, field, (size_t)CP_FIELD_ABOVE + (size_t)what,
             named(name, "rate_ratio_%s_above_%g", ABOVE[what].name, x),
             named(label, "  rate ratio above %s %g %s", ABOVE[what].label, x, ABOVE[what].unit));
     }

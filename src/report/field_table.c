@@ -51,9 +51,9 @@ static unsigned char class_of(double value, const double *end, size_t ends)
 
 unsigned char cp_field_type_class(const char *crash_type)
 {
-    for (unsigned char k = 0; k < sizeof TYPE / sizeof *TYPE; k++)
+    for (size_t k = 0; k < sizeof TYPE / sizeof *TYPE; k++)
         if (strcmp(crash_type, TYPE[k]) == 0)
-            return k;
+            return (unsigned char)k;
     return CP_FIELD_UNKNOWN;
 }
 

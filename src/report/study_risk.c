@@ -12,7 +12,7 @@ static cp_status load(const char *column, const char *text, json_t **array, cp_e
 {
     json_error_t place;
     *array = json_loads(text, 0, &place);
-    if (*array && json_is_array(*array))
+    if (json_is_array(*array))
         return CP_OK;
     json_decref(*array);
     *array = NULL;

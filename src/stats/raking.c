@@ -26,7 +26,7 @@ size_t cp_raking_cell(const cp_raking *raking, const cp_raking_classes *classes)
 
 static cp_raking_classes classes_of(const cp_raking *raking, size_t cell)
 {
-    cp_raking_classes classes;
+    cp_raking_classes classes = {0};
     for (size_t m = raking->count; m-- > 0;) {
         size_t count = raking->margin[m].count, own = cell % (count + 1);
         classes.of[m] = own < count ? (unsigned char)own : CP_RAKING_UNKNOWN;

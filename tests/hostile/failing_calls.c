@@ -30,8 +30,9 @@
     X(read)                                                                                        \
     X(write)                                                                                       \
     X(full)                                                                                        \
-    X(sync) X(truncate) X(lock) X(map) X(delete) X(rename) X(fsync) X(spawn) X(pipe) X(fork)       \
-        X(temp) X(clock)
+    X(sync)                                                                                        \
+    X(truncate) X(lock) X(map) X(delete) X(rename) X(fsync) X(spawn) X(pipe) X(fork) X(temp)       \
+        X(clock)
 enum kind {
 #define KIND_NAME(name) KIND_##name,
     KINDS(KIND_NAME)

@@ -4,6 +4,8 @@
 #include "calibrate/parallel.h"
 #include "core/units.h"
 
+#include <stdatomic.h>
+
 // OLC is decided by then in every reference configuration; the record ends when it is.
 static const double SHORTEST_RECORD_S = 0.08;
 static const double LONGEST_RECORD_S = 0.25;
@@ -15,9 +17,10 @@ typedef struct evaluation {
     const bool *use;
     double time_step_s;
     double *olc_g;
+    atomic_bool out_of_memory; /* in any: no result is worth anything */
 } evaluation;
 
-static double olc_of_case(const evaluation *work, const cp_reference_case *row)
+static double olc_of_case(evaluation *work, const cp_reference_case *row)
 {
     cp_crash_options options = cp_crash_options_default();
     options.time_step_s = work->time_step_s;
@@ -31,7 +34,11 @@ static double olc_of_case(const evaluation *work, const cp_reference_case *row)
             cp_rad_from_deg(row->angle_deg), &configuration, &error) != CP_OK)
         return NAN;
     cp_crash_result result;
-    if (cp_crash_simulate(work->model, NULL, &configuration, &options, &result, &error) != CP_OK)
+    cp_status status =
+        cp_crash_simulate(work->model, NULL, &configuration, &options, &result, &error);
+    if (status == CP_NO_MEMORY)
+        atomic_store(&work->out_of_memory, true);
+    if (status != CP_OK)
         return NAN;
     const cp_olc *olc = &result.severity[0].olc;
     double olc_g = olc->status == CP_OLC_VALUE ? olc->olc_g : 0.0;
@@ -50,8 +57,10 @@ cp_status cp_objective_olc(const cp_vehicle_model *model, const cp_reference_cas
                            size_t count, const bool *use, double time_step_s, int threads,
                            double *olc_g, cp_error *error)
 {
-    evaluation work = {model, cases, use, time_step_s, olc_g};
-    return cp_parallel_simulate(count, threads, evaluate_case, &work, error);
+    evaluation work = {model, cases, use, time_step_s, olc_g, false};
+    cp_status status = cp_parallel_simulate(count, threads, evaluate_case, &work, error);
+    return status == CP_OK && work.out_of_memory ? cp_fail_memory(error, "crash simulation")
+                                                 : status;
 }
 
 double cp_objective_mean_error(const cp_reference_case *cases, const double *olc_g, size_t count,

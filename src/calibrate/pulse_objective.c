@@ -5,6 +5,7 @@
 #include "core/units.h"
 
 #include <math.h>
+#include <stdatomic.h>
 
 // Weight of the velocities in the total error.
 static const double VELOCITY_WEIGHT = 10.0;
@@ -127,6 +128,7 @@ typedef struct evaluation {
     double time_step_s;
     cp_pulse_error *errors;
     double *misfits;
+    atomic_bool out_of_memory; /* in any: no result is worth anything */
 } evaluation;
 
 static void evaluate_pulse(void *context, size_t k)
@@ -139,6 +141,8 @@ static void evaluate_pulse(void *context, size_t k)
                                                    &result, &error);
     if (status == CP_OK)
         status = cp_pulse_compare(&work->pulses[k], &result, &work->errors[k], misfit, &error);
+    if (status == CP_NO_MEMORY)
+        atomic_store(&work->out_of_memory, true);
     for (size_t m = 0; status != CP_OK && misfit != NULL && m < CP_PULSE_MISFITS; m++)
         misfit[m] = NAN;
     if (status != CP_OK)
@@ -151,8 +155,10 @@ cp_status cp_objective_pulse(const cp_vehicle_model *model, const cp_reference_p
                              size_t count, double time_step_s, int threads, cp_pulse_error *errors,
                              double *misfits, cp_error *error)
 {
-    evaluation work = {model, pulses, time_step_s, errors, misfits};
-    return cp_parallel_simulate(count, threads, evaluate_pulse, &work, error);
+    evaluation work = {model, pulses, time_step_s, errors, misfits, false};
+    cp_status status = cp_parallel_simulate(count, threads, evaluate_pulse, &work, error);
+    return status == CP_OK && work.out_of_memory ? cp_fail_memory(error, "crash simulation")
+                                                 : status;
 }
 
 double cp_objective_pulse_mean(const cp_reference_pulse *pulses, const cp_pulse_error *errors,

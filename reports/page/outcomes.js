@@ -92,7 +92,6 @@ const riskFigure = figure("figure-risk", "Injury risk over delta-v",
     const x = d3.scaleLinear().domain([0, d3.max(curves, r => d3.max(r.curve.x))]).range([0, width - margin.left - margin.right]);
     const y = d3.scaleLinear().domain([0, 1]).range([height - margin.top - margin.bottom, 0]);
     const inner = frame(svg, width, height, margin, x, y, curves.every(r => r.predictor.startsWith("delta_v")) ? "delta-v, km/h" : "predictor, km/h", "probability");
-    curves.filter(r => r.curve.low).forEach(r => inner.append("path").attr("class", "band").attr("d", d3.area().x(v => x(v)).y0((v, k) => y(r.curve.low[k])).y1((v, k) => y(r.curve.high[k]))(r.curve.x)).style("fill", `var(--v${1 + riskLevels.indexOf(r.level) % 5})`).style("opacity", 0.14));
     curves.forEach(r => riskStyle(inner.append("path").attr("class", "curve").attr("d", d3.line().x(v => x(v)).y((v, k) => y(r.curve.probability[k]))(r.curve.x)).style("fill", "none"), r));
     readout(svg, inner, x, y.range()[0], value => [`${fixed(value, 0)} km/h`, ...curves.map(r => `${riskLabel(r)}: ${percent(r.curve.probability[Math.min(r.curve.x.length - 1, Math.round(value / (r.curve.x[1] - r.curve.x[0])))])}`)]);
     return height;

@@ -4,8 +4,6 @@
 #include "calibrate/parallel.h"
 #include "core/units.h"
 
-#include <stdatomic.h>
-
 // OLC is decided by then in every reference configuration; the record ends when it is.
 static const double SHORTEST_RECORD_S = 0.08;
 static const double LONGEST_RECORD_S = 0.25;
@@ -17,11 +15,12 @@ typedef struct evaluation {
     const bool *use;
     double time_step_s;
     double *olc_g;
-    atomic_bool out_of_memory; /* in any: no result is worth anything */
 } evaluation;
 
-static double olc_of_case(evaluation *work, const cp_reference_case *row)
+// NAN where it cannot be simulated.
+static cp_status olc_of_case(const evaluation *work, const cp_reference_case *row, double *olc_g)
 {
+    *olc_g = NAN;
     cp_crash_options options = cp_crash_options_default();
     options.time_step_s = work->time_step_s;
     options.duration_s = SHORTEST_RECORD_S;
@@ -32,35 +31,31 @@ static double olc_of_case(evaluation *work, const cp_reference_case *row)
     if (cp_crash_configuration_from_description(
             work->model, NULL, NULL, cp_m_s_from_km_h(row->speed_km_h), 0.0, 1e-3 * row->offset_mm,
             cp_rad_from_deg(row->angle_deg), &configuration, &error) != CP_OK)
-        return NAN;
+        return CP_OK;
     cp_crash_result result;
     cp_status status =
         cp_crash_simulate(work->model, NULL, &configuration, &options, &result, &error);
-    if (status == CP_NO_MEMORY)
-        atomic_store(&work->out_of_memory, true);
     if (status != CP_OK)
-        return NAN;
+        return status == CP_NO_MEMORY ? status : CP_OK;
     const cp_olc *olc = &result.severity[0].olc;
-    double olc_g = olc->status == CP_OLC_VALUE ? olc->olc_g : 0.0;
+    *olc_g = olc->status == CP_OLC_VALUE ? olc->olc_g : 0.0;
     cp_crash_result_destroy(&result);
-    return olc_g;
+    return CP_OK;
 }
 
-static void evaluate_case(void *context, size_t k)
+static cp_status evaluate_case(void *context, size_t k)
 {
-    evaluation *work = context;
-    if (work->use == NULL || work->use[k])
-        work->olc_g[k] = olc_of_case(work, &work->cases[k]);
+    const evaluation *work = context;
+    bool wanted = work->use == NULL || work->use[k];
+    return wanted ? olc_of_case(work, &work->cases[k], &work->olc_g[k]) : CP_OK;
 }
 
 cp_status cp_objective_olc(const cp_vehicle_model *model, const cp_reference_case *cases,
                            size_t count, const bool *use, double time_step_s, int threads,
                            double *olc_g, cp_error *error)
 {
-    evaluation work = {model, cases, use, time_step_s, olc_g, false};
-    cp_status status = cp_parallel_simulate(count, threads, evaluate_case, &work, error);
-    return status == CP_OK && work.out_of_memory ? cp_fail_memory(error, "crash simulation")
-                                                 : status;
+    evaluation work = {model, cases, use, time_step_s, olc_g};
+    return cp_parallel_simulate(count, threads, evaluate_case, &work, error);
 }
 
 double cp_objective_mean_error(const cp_reference_case *cases, const double *olc_g, size_t count,

@@ -12,12 +12,13 @@ typedef struct share {
     size_t count;
     size_t first;
     size_t stride;
+    cp_status status; /* of the job that ended it */
 } share;
 
-static void run_share(const share *work)
+static void run_share(share *work)
 {
-    for (size_t k = work->first; k < work->count; k += work->stride)
-        work->job(work->context, k);
+    for (size_t k = work->first; work->status == CP_OK && k < work->count; k += work->stride)
+        work->status = work->job(work->context, k);
 }
 
 static void *run_share_in_thread(void *context)
@@ -40,7 +41,7 @@ cp_status cp_parallel_simulate(size_t count, int threads, cp_parallel_job job, v
     share shares[THREADS_MAX];
     pthread_t handles[THREADS_MAX];
     for (int t = 0; t < threads; t++)
-        shares[t] = (share){job, context, count, (size_t)t, (size_t)threads};
+        shares[t] = (share){job, context, count, (size_t)t, (size_t)threads, CP_OK};
 
     // This thread takes the first share itself.
     int started = 1, failed = 0;
@@ -57,5 +58,8 @@ cp_status cp_parallel_simulate(size_t count, int threads, cp_parallel_job job, v
     }
     if (failed)
         return cp_fail(error, CP_RUN_FAILED, "could not run %d simulation threads", threads);
+    for (int t = 0; t < threads; t++)
+        if (shares[t].status != CP_OK)
+            return cp_fail_memory(error, "crash simulation");
     return CP_OK;
 }

@@ -5,7 +5,6 @@
 #include "core/units.h"
 
 #include <math.h>
-#include <stdatomic.h>
 
 // Weight of the velocities in the total error.
 static const double VELOCITY_WEIGHT = 10.0;
@@ -128,10 +127,9 @@ typedef struct evaluation {
     double time_step_s;
     cp_pulse_error *errors;
     double *misfits;
-    atomic_bool out_of_memory; /* in any: no result is worth anything */
 } evaluation;
 
-static void evaluate_pulse(void *context, size_t k)
+static cp_status evaluate_pulse(void *context, size_t k)
 {
     evaluation *work = context;
     double *misfit = work->misfits != NULL ? work->misfits + k * CP_PULSE_MISFITS : NULL;
@@ -141,24 +139,21 @@ static void evaluate_pulse(void *context, size_t k)
                                                    &result, &error);
     if (status == CP_OK)
         status = cp_pulse_compare(&work->pulses[k], &result, &work->errors[k], misfit, &error);
-    if (status == CP_NO_MEMORY)
-        atomic_store(&work->out_of_memory, true);
     for (size_t m = 0; status != CP_OK && misfit != NULL && m < CP_PULSE_MISFITS; m++)
         misfit[m] = NAN;
     if (status != CP_OK)
         work->errors[k] =
             (cp_pulse_error){NAN, NAN, NAN, NAN, NAN, NAN, .model = {NAN, NAN, NAN, NAN}};
     cp_crash_result_destroy(&result);
+    return status == CP_NO_MEMORY ? status : CP_OK;
 }
 
 cp_status cp_objective_pulse(const cp_vehicle_model *model, const cp_reference_pulse *pulses,
                              size_t count, double time_step_s, int threads, cp_pulse_error *errors,
                              double *misfits, cp_error *error)
 {
-    evaluation work = {model, pulses, time_step_s, errors, misfits, false};
-    cp_status status = cp_parallel_simulate(count, threads, evaluate_pulse, &work, error);
-    return status == CP_OK && work.out_of_memory ? cp_fail_memory(error, "crash simulation")
-                                                 : status;
+    evaluation work = {model, pulses, time_step_s, errors, misfits};
+    return cp_parallel_simulate(count, threads, evaluate_pulse, &work, error);
 }
 
 double cp_objective_pulse_mean(const cp_reference_pulse *pulses, const cp_pulse_error *errors,

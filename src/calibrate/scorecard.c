@@ -287,14 +287,14 @@ static size_t values_of(const maker *make, const block *of)
     return total;
 }
 
-static void run_task(void *context, size_t k)
+static cp_status run_task(void *context, size_t k)
 {
     const maker *make = context;
     task *work = &make->task[k];
     const cp_suite_case *row = &work->of->cases.row[work->index];
     double *values = calloc(values_of(make, work->of) * CP_SUITE_OFFSETS_MAX, sizeof *values);
     cp_status status = values != NULL ? CP_OK : CP_NO_MEMORY;
-    cp_error error = {.text = "out of memory"};
+    cp_error error = {0};
     for (size_t offset = 0; status == CP_OK && offset < row->offset_count; offset++) {
         cp_crash_result result, wall;
         status = cp_suite_case_simulate(row, offset, &result, &wall, &error);
@@ -310,6 +310,7 @@ static void run_task(void *context, size_t k)
     else
         snprintf(work->problem, sizeof work->problem, "%.60s: %.130s", row->label, error.text);
     free(values);
+    return status == CP_NO_MEMORY ? status : CP_OK;
 }
 
 static cp_status run_tasks(maker *make)

@@ -6,7 +6,6 @@
 #include "crash/crash_simulation.h"
 
 #include <math.h>
-#include <stdatomic.h>
 
 const cp_target_kind CP_TARGET_KIND[CP_TARGET_QUANTITIES] = {
     [CP_TARGET_OLC] = {"olc_g", "g", 1.0, false},
@@ -80,10 +79,9 @@ typedef struct target_work {
     const cp_vehicle_model *model;
     double time_step_s;
     double *value;
-    atomic_bool out_of_memory; /* in any: no value is worth anything */
 } target_work;
 
-static void judge_target(void *context, size_t index)
+static cp_status judge_target(void *context, size_t index)
 {
     target_work *work = context;
     const cp_target *target = &work->targets[index];
@@ -102,26 +100,22 @@ static void judge_target(void *context, size_t index)
             work->model, opponent, target->has_barrier ? &target->barrier : NULL, speed_m_s,
             speed_m_s, 1e-3 * target->offset_mm, cp_rad_from_deg(target->angle_deg), &configuration,
             &refused) != CP_OK)
-        return;
+        return CP_OK;
     cp_status status =
         cp_crash_simulate(work->model, opponent, &configuration, &options, &result, &refused);
-    if (status == CP_NO_MEMORY)
-        atomic_store(&work->out_of_memory, true);
     if (status != CP_OK)
-        return;
+        return status == CP_NO_MEMORY ? status : CP_OK;
     for (size_t b = 0; b < target->bound_count; b++)
         value[b] = quantity_of(target, &target->bound[b], &result);
     cp_crash_result_destroy(&result);
+    return CP_OK;
 }
 
 cp_status cp_target_values(const cp_target *targets, size_t count, const cp_vehicle_model *model,
                            double time_step_s, int threads, double *value, cp_error *error)
 {
-    target_work work = {targets, model, time_step_s, value, false};
-    cp_status status =
-        count == 0 ? CP_OK : cp_parallel_simulate(count, threads, judge_target, &work, error);
-    return status == CP_OK && work.out_of_memory ? cp_fail_memory(error, "crash simulation")
-                                                 : status;
+    target_work work = {targets, model, time_step_s, value};
+    return count == 0 ? CP_OK : cp_parallel_simulate(count, threads, judge_target, &work, error);
 }
 
 double cp_target_excess(const cp_target_bounds *bounds, double value)

@@ -75,10 +75,8 @@ cp_status cp_field_print_table(const cp_comparison *comparison, FILE *file, cp_e
 {
     static const char *const COLUMN[] = {"baseline beside the field", "field", "se", "study",
                                          "weighted"};
-    const cp_field_variant *field = NULL;
-    for (size_t k = 0; k < comparison->variant_count; k++)
-        if (comparison->variant[k].variant == comparison->baseline)
-            field = comparison->variant[k].field;
+    const cp_variant_figures *baseline = cp_comparison_variant(comparison, comparison->baseline);
+    const cp_field_variant *field = baseline ? baseline->field : NULL;
     if (!field)
         return CP_OK;
     cp_table table;

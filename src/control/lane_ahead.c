@@ -6,7 +6,7 @@
 #define FAR_OFF_M 8.0 /* from its lane: a car pushed off it, or a lane read wrong */
 #define CLOSE_CORNERS_M 0.3
 #define LANES_MAX 24 /* that follow each other within any reach */
-#define CP_TRAIL_POINTS 48
+#define TRAIL_POINTS 48
 #define TRAIL_LANES 6
 #define REAR_OFF_1 0.1 /* rad between the heading and the way behind: a lane change is less */
 
@@ -112,7 +112,7 @@ static void follow_lanes(layer *on, uint32_t number, size_t first, const uint32_
         }
         const cp_lane_link *link =
             cp_lane_map_link(on->map, number, next_count > 0 ? next_lanes[0] : CP_LANE_NONE);
-        number = link == NULL ? CP_LANE_NONE : link->via != CP_LANE_NONE ? link->via : link->to;
+        number = link == NULL ? CP_LANE_NONE : cp_lane_link_next(link);
         const cp_lane *next = cp_lane_map_lane(on->map, number);
         // Between two lanes inside one junction SUMO's drivers wait for those who go first, too.
         bool is_within = lane->is_inside && next != NULL && next->is_inside;
@@ -178,7 +178,7 @@ bool cp_is_put_aside(const cp_vehicle_motion *motion)
 
 /* What lies behind a front, from there backwards. */
 typedef struct trail {
-    cp_way_point corner[CP_TRAIL_POINTS];
+    cp_way_point corner[TRAIL_POINTS];
     size_t count;
 } trail;
 
@@ -186,7 +186,7 @@ static void add_behind(trail *behind, cp_vec2 point_m, uint32_t lane)
 {
     const cp_way_point *last = &behind->corner[behind->count - 1];
     double step_m = length_of(cp_vec2_sub(point_m, last->point_m));
-    if (behind->count < CP_TRAIL_POINTS && step_m > 1e-6)
+    if (behind->count < TRAIL_POINTS && step_m > 1e-6)
         behind->corner[behind->count++] =
             (cp_way_point){point_m, last->way_m - step_m, lane, 0.0, last->z_m};
 }

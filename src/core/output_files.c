@@ -92,7 +92,7 @@ cp_status cp_output_files_check(const char *const outputs[], size_t output_count
     return CP_OK;
 }
 
-static bool has_parent_step(const char *path)
+bool cp_path_has_parent_step(const char *path)
 {
     for (const char *at = path; at != NULL; at = strchr(at, '/')) {
         at += *at == '/';
@@ -104,7 +104,7 @@ static bool has_parent_step(const char *path)
 
 cp_status cp_output_file_check_below(const char *base, const char *path, cp_error *error)
 {
-    if (path[0] == '\0' || path[0] == '/' || has_parent_step(path))
+    if (path[0] == '\0' || path[0] == '/' || cp_path_has_parent_step(path))
         return cp_fail(error, CP_BAD_INPUT,
                        "must be a file beside %s or in a folder below, found '%s'", base, path);
     char text[PATH_MAX], home[PATH_MAX], folder[PATH_MAX];

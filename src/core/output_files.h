@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -24,6 +25,9 @@ CP_MUST_CHECK cp_status cp_output_files_check(const char *const outputs[], size_
  * no "..", and no symbolic link on the way out of it. */
 CP_MUST_CHECK cp_status cp_output_file_check_below(const char *base, const char *path,
                                                    cp_error *error);
+
+/* Whether one of a path's parts is "..". */
+bool cp_path_has_parent_step(const char *path);
 
 #ifdef __cplusplus
 }

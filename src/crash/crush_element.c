@@ -53,11 +53,6 @@ double cp_crush_loading_force(const cp_crush_law *law, double s_m)
     return cp_crush_loading_at(law, s_m).force_n;
 }
 
-double cp_crush_loading_slope(const cp_crush_law *law, double s_m)
-{
-    return cp_crush_loading_at(law, s_m).slope_n_m;
-}
-
 double cp_crush_loading_work(const cp_crush_law *law, double s_m)
 {
     // Area under the straight pieces up to there.

@@ -31,9 +31,7 @@ typedef struct cp_crush_state {
 
 /* Force on the loading curve at compression s_m (0 for s_m <= 0). */
 double cp_crush_loading_force(const cp_crush_law *law, double s_m);
-/* Slope of the loading curve just beyond s_m. */
-double cp_crush_loading_slope(const cp_crush_law *law, double s_m);
-/* Both at once. */
+/* The same, and the slope of the loading curve just beyond s_m. */
 typedef struct cp_crush_loading {
     double force_n;
     double slope_n_m;

@@ -12,7 +12,8 @@ static cp_fcd_sample sample_of(const cp_collision_places *places, int role)
                            .front_m = places->front_m[role],
                            .yaw_rad = atan2(along_m.y, along_m.x),
                            .speed_m_s = places->speed_m_s[role],
-                           .lane_position_m = NAN};
+                           .lane_position_m = NAN,
+                           .lane = CP_FCD_NO_LANE};
 }
 
 // In order of time, in place of a sample of the same step.
@@ -24,6 +25,7 @@ static cp_status put(cp_fcd_track *track, cp_fcd_sample sample, double step_leng
         at--;
     if (at < track->count && track->sample[at].time_s < sample.time_s + 0.5 * step_length_s) {
         sample.lane_position_m = track->sample[at].lane_position_m;
+        sample.lane = track->sample[at].lane;
         track->sample[at] = sample;
         return CP_OK;
     }

@@ -481,14 +481,6 @@ static void write_driver_errors(FILE *out, const cp_study_data *data, cp_slice s
     }
 }
 
-const cp_variant_figures *cp_comparison_variant(const cp_comparison *comparison, size_t variant)
-{
-    for (size_t k = 0; k < comparison->variant_count; k++)
-        if (comparison->variant[k].variant == variant)
-            return &comparison->variant[k];
-    return NULL;
-}
-
 cp_status cp_comparison_answer(const cp_study_data *data, const cp_comparison *comparison,
                                char **answer, cp_error *error)
 {

@@ -13,9 +13,6 @@ CP_MUST_CHECK cp_status cp_comparison_answer(const cp_study_data *data,
                                              const cp_comparison *comparison, char **answer,
                                              cp_error *error);
 
-/* The figures of a variant of the study; NULL when the comparison has none of it. */
-const cp_variant_figures *cp_comparison_variant(const cp_comparison *comparison, size_t variant);
-
 /* An estimate as text: "18.2", "<1.9", "n/a". digits after the point. Returns text. */
 #define CP_ESTIMATE_TEXT_SIZE 32
 const char *cp_estimate_text(cp_estimate estimate, int digits, char text[CP_ESTIMATE_TEXT_SIZE]);

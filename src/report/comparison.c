@@ -154,7 +154,6 @@ static cp_status figure_injuries(const cp_study_data *data, const cp_replication
             injury->drivers = sum.drivers;
             injury->unknown = sum.unknown;
             injury->expected = sum.expected;
-            injury->with_parameters = function->has_covariance;
             injury->parameters_se_1 = sqrt(cp_risk_variance(function, sum.gradient)) / sum.expected;
             cp_exposure exposure = {set->count, expected, set->vehicle_km};
             injury->rate = cp_rate(&exposure) * CP_RATE_PER_KM;
@@ -318,7 +317,6 @@ static cp_status contrast_benefit(const cp_study_data *data, const cp_replicatio
         1.0 - cp_rate_ratio(&exposure[0], &exposure[1], set[0].stratum, set[1].stratum);
     cp_status status =
         cp_rate_ratio_bootstrap(&exposure[0], &exposure[1], resampling, &ratio, error);
-    benefit->with_parameters = function->has_covariance;
     benefit->parameters_se_1 = cp_injury_ratio_se(function, &sum[0], &sum[1]);
     ratio = cp_risk_widened(1.0 - benefit->benefit_1, ratio, benefit->parameters_se_1,
                             function->freedom);
@@ -477,4 +475,12 @@ void cp_comparison_destroy(cp_comparison *comparison)
     free(comparison->variant);
     free(comparison->contrast);
     *comparison = (cp_comparison){0};
+}
+
+const cp_variant_figures *cp_comparison_variant(const cp_comparison *comparison, size_t variant)
+{
+    for (size_t k = 0; k < comparison->variant_count; k++)
+        if (comparison->variant[k].variant == variant)
+            return &comparison->variant[k];
+    return NULL;
 }

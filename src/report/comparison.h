@@ -61,7 +61,6 @@ typedef struct cp_injury_figures {
     double expected;
     double rate; /* expected per 10^6 veh-km; NAN without exposure */
     cp_interval rate_interval;
-    bool with_parameters;   /* the function has a covariance */
     double parameters_se_1; /* relative standard error it leaves; 0 without, NAN of nothing */
 } cp_injury_figures;
 
@@ -72,7 +71,6 @@ typedef struct cp_benefit_figures {
     double treatment;
     double benefit_1; /* NAN without any expected with the baseline */
     cp_interval interval;
-    bool with_parameters;   /* the function has a covariance */
     double parameters_se_1; /* relative standard error it leaves to 1 - benefit */
     double bound[2]; /* of the benefit, lower and upper, were the risk of each vehicle outside
                         validity, or without a predictor, anything from 0 to 1; -INFINITY; NAN, also
@@ -204,5 +202,8 @@ CP_MUST_CHECK cp_status cp_compare(const cp_study_data *data, size_t baseline, c
                                    const cp_comparison_options *options, cp_comparison *comparison,
                                    cp_error *error);
 void cp_comparison_destroy(cp_comparison *comparison);
+
+/* The figures of a variant of the study; NULL when the comparison has none of it. */
+const cp_variant_figures *cp_comparison_variant(const cp_comparison *comparison, size_t variant);
 
 #endif

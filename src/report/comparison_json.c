@@ -16,7 +16,7 @@ static json_t *estimate_json(cp_estimate estimate)
                      cp_number_json(estimate.value));
 }
 
-static json_t *interval_json(cp_interval interval)
+json_t *cp_interval_json(cp_interval interval)
 {
     return json_pack("{s:s, s:o, s:o}", "status", cp_interval_status_text(interval.status), "low",
                      cp_number_json(interval.low), "high", cp_number_json(interval.high));
@@ -36,10 +36,10 @@ static json_t *model_part_json(const cp_model_part *p)
 {
     return json_pack("{s:I, s:o, s:o, s:s, s:o, s:o, s:o, s:o}", "sets", (json_int_t)p->sets,
                      "estimate", estimate_json(p->estimate), "replications",
-                     interval_json(p->replications), "status", cp_interval_status_text(p->status),
-                     "sd", cp_number_json(p->sd), "mean", cp_number_json(p->mean),
-                     "model_half_width", cp_number_json(p->half_width), "combined",
-                     interval_json(p->combined));
+                     cp_interval_json(p->replications), "status",
+                     cp_interval_status_text(p->status), "sd", cp_number_json(p->sd), "mean",
+                     cp_number_json(p->mean), "model_half_width", cp_number_json(p->half_width),
+                     "combined", cp_interval_json(p->combined));
 }
 
 /* How the quantities are called, in the order of cp_slice_quantity. */
@@ -60,7 +60,7 @@ static json_t *scopes_json(const cp_variant_figures *v, int quantity)
     for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
         json_t *d = description_json(&v->description[quantity][scope]);
         if (quantity == CP_QUANTITY_OLC) {
-            json_object_set_new(d, "mean_interval", interval_json(v->olc_mean_interval[scope]));
+            json_object_set_new(d, "mean_interval", cp_interval_json(v->olc_mean_interval[scope]));
             json_object_set_new(d, "mean_precision", precision_json(v->olc_mean_precision[scope]));
             json_object_set_new(d, "ecdf_band_half_width_1",
                                 cp_number_json(v->olc_band[scope].half_width_1));
@@ -82,7 +82,7 @@ static json_t *injuries_json(const cp_study_data *data, const cp_variant_figures
                                 data->risk[k].name, "level", data->risk[k].level, "drivers",
                                 (json_int_t)i->drivers, "unknown", (json_int_t)i->unknown,
                                 "expected", i->expected, "per_million_km", cp_number_json(i->rate),
-                                "interval", interval_json(i->rate_interval), "risk_se_1",
+                                "interval", cp_interval_json(i->rate_interval), "risk_se_1",
                                 cp_number_json(i->parameters_se_1)));
         }
         json_object_set_new(scopes, CP_SCOPE_TEXT[scope], list);
@@ -99,7 +99,7 @@ static json_t *benefits_json(const cp_study_data *data, const cp_benefit_figures
                                               data->risk[k].level, "baseline", benefit[k].baseline,
                                               "treatment", benefit[k].treatment, "benefit_1",
                                               cp_number_json(benefit[k].benefit_1), "interval",
-                                              interval_json(benefit[k].interval), "bounds_1",
+                                              cp_interval_json(benefit[k].interval), "bounds_1",
                                               cp_number_json(benefit[k].bound[0]),
                                               cp_number_json(benefit[k].bound[1]), "risk_se_1",
                                               cp_number_json(benefit[k].parameters_se_1)));
@@ -139,7 +139,7 @@ static json_t *exceedance_json(const cp_variant_figures *v)
                                       (json_int_t)e->crashes, "at_least", (json_int_t)e->least,
                                       "at_most", (json_int_t)e->most, "per_million_km",
                                       cp_number_json(e->rate), "interval",
-                                      interval_json(e->interval), "curve", curve));
+                                      cp_interval_json(e->interval), "curve", curve));
     }
     return object;
 }
@@ -149,13 +149,14 @@ static json_t *exceedance_ratios_json(const cp_contrast_figures *c)
     json_t *object = json_object();
     for (int what = 0; what < CP_EXCEEDED_COUNT; what++) {
         const cp_exceedance_ratio *r = &c->above[what];
-        json_object_set_new(
-            object, CP_EXCEEDED_TEXT[what],
-            json_pack("{s:f, s:[I, I], s:o, s:o, s:[o, o], s:[o, o]}", "x", r->x, "crashes",
-                      (json_int_t)r->crashes[0], (json_int_t)r->crashes[1], "ratio",
-                      cp_number_json(r->ratio), "interval", interval_json(r->interval), "bounds",
-                      cp_number_json(r->bound[0]), cp_number_json(r->bound[1]), "bound_intervals",
-                      interval_json(r->bound_interval[0]), interval_json(r->bound_interval[1])));
+        json_object_set_new(object, CP_EXCEEDED_TEXT[what],
+                            json_pack("{s:f, s:[I, I], s:o, s:o, s:[o, o], s:[o, o]}", "x", r->x,
+                                      "crashes", (json_int_t)r->crashes[0],
+                                      (json_int_t)r->crashes[1], "ratio", cp_number_json(r->ratio),
+                                      "interval", cp_interval_json(r->interval), "bounds",
+                                      cp_number_json(r->bound[0]), cp_number_json(r->bound[1]),
+                                      "bound_intervals", cp_interval_json(r->bound_interval[0]),
+                                      cp_interval_json(r->bound_interval[1])));
     }
     return object;
 }
@@ -163,11 +164,11 @@ static json_t *exceedance_ratios_json(const cp_contrast_figures *c)
 static json_t *variant_json(const cp_study_data *data, const cp_comparison *comparison,
                             const cp_variant_figures *v)
 {
-    json_t *rate =
-        json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "value", cp_number_json(v->rate), "interval",
-                  interval_json(cp_rate_interval(v)), "widened", interval_json(v->rate_widened),
-                  "bootstrap", interval_json(v->rate_bootstrap), "widening",
-                  widening_json(&v->rate_widening), "precision", precision_json(v->rate_precision));
+    json_t *rate = json_pack(
+        "{s:o, s:o, s:o, s:o, s:o, s:o}", "value", cp_number_json(v->rate), "interval",
+        cp_interval_json(cp_rate_interval(v)), "widened", cp_interval_json(v->rate_widened),
+        "bootstrap", cp_interval_json(v->rate_bootstrap), "widening",
+        widening_json(&v->rate_widening), "precision", precision_json(v->rate_precision));
     double share = v->frontal_vehicles ? (double)v->inside / (double)v->frontal_vehicles : NAN;
     json_t *object = json_pack(
         "{s:s, s:b, s:I, s:f, s:f, s:I, s:I, s:I, s:o, s:I, s:I, s:I, s:o}", "variant",
@@ -194,7 +195,7 @@ static json_t *variant_json(const cp_study_data *data, const cp_comparison *comp
 static json_t *superiority_json(const cp_superiority *s)
 {
     return json_pack("{s:o, s:o, s:o, s:o, s:o, s:s}", "cliffs_delta",
-                     cp_number_json(s->cliffs_delta), "interval", interval_json(s->interval),
+                     cp_number_json(s->cliffs_delta), "interval", cp_interval_json(s->interval),
                      "standard_error", cp_number_json(s->standard_error), "freedom",
                      cp_number_json(s->freedom), "p", cp_number_json(s->p), "status",
                      cp_interval_status_text(s->status));
@@ -206,10 +207,10 @@ static json_t *severity_json(const cp_contrast *c, double p_holm, double distanc
         "{s:[I, I], s:[o, o], s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "compared",
         (json_int_t)c->compared[0], (json_int_t)c->compared[1], "medians",
         estimate_json(c->median[0]), estimate_json(c->median[1]), "mean_difference",
-        estimate_json(c->mean_difference), "mean_interval", interval_json(c->mean_interval),
+        estimate_json(c->mean_difference), "mean_interval", cp_interval_json(c->mean_interval),
         "median_difference", estimate_json(c->median_difference), "median_interval",
-        interval_json(c->median_interval), "p90_difference", estimate_json(c->p90_difference),
-        "p90_interval", interval_json(c->p90_interval), "superiority",
+        cp_interval_json(c->median_interval), "p90_difference", estimate_json(c->p90_difference),
+        "p90_interval", cp_interval_json(c->p90_interval), "superiority",
         superiority_json(&c->superiority), "p_holm", cp_number_json(p_holm), "distance",
         cp_number_json(c->distance), "distance_p", cp_number_json(c->distance_p), "distance_p_holm",
         cp_number_json(distance_p_holm));
@@ -224,10 +225,10 @@ static json_t *contrast_json(const cp_study_data *data, const cp_contrast_figure
         "without_partner", (json_int_t)c->partnerless[0], (json_int_t)c->partnerless[1],
         "frontal_crashes", (json_int_t)c->frontal_crashes[0], (json_int_t)c->frontal_crashes[1],
         "rate_ratio", cp_number_json(c->rate_ratio), "rate_ratio_interval",
-        interval_json(cp_rate_ratio_interval(c)), "rate_ratio_widened",
-        interval_json(c->rate_ratio_widened), "rate_ratio_widening",
+        cp_interval_json(cp_rate_ratio_interval(c)), "rate_ratio_widened",
+        cp_interval_json(c->rate_ratio_widened), "rate_ratio_widening",
         widening_json(&c->rate_ratio_widening), "rate_ratio_bootstrap",
-        interval_json(c->rate_ratio_bootstrap), "rate_ratio_precision",
+        cp_interval_json(c->rate_ratio_bootstrap), "rate_ratio_precision",
         precision_json(c->rate_ratio_precision), "rate_p", cp_number_json(c->rate_p), "rate_p_holm",
         cp_number_json(c->rate_p_holm));
     for (int q = 0; q < CP_QUANTITIES_COMPARED; q++)
@@ -254,9 +255,9 @@ static json_t *paired_json(const cp_paired *p, double p_holm)
     return json_pack(
         "{s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "pairs", (json_int_t)p->count,
         "lower", (json_int_t)p->lower, "higher", (json_int_t)p->higher, "mean",
-        cp_number_json(p->mean), "mean_interval", interval_json(p->mean_interval), "hodges_lehmann",
-        cp_number_json(p->hodges_lehmann), "hodges_lehmann_interval",
-        interval_json(p->hodges_lehmann_interval), "signed_rank_v",
+        cp_number_json(p->mean), "mean_interval", cp_interval_json(p->mean_interval),
+        "hodges_lehmann", cp_number_json(p->hodges_lehmann), "hodges_lehmann_interval",
+        cp_interval_json(p->hodges_lehmann_interval), "signed_rank_v",
         cp_number_json(p->signed_rank.statistic), "signed_rank_p", cp_number_json(p->signed_rank.p),
         "signed_rank_p_holm", cp_number_json(p_holm));
 }
@@ -271,7 +272,7 @@ static json_t *counterfactual_json(const cp_study_data *data, const cp_counterfa
         if (o < CP_OUTCOME_NO_OLC)
             json_object_set_new(outcomes, name, json_integer((json_int_t)c->outcome[o]));
         if (o != CP_OUTCOME_INVALID && o < CP_OUTCOME_NO_OLC)
-            json_object_set_new(shares, name, interval_json(c->share[o]));
+            json_object_set_new(shares, name, cp_interval_json(c->share[o]));
     }
     for (int r = CP_NULL_REPRODUCED + 1; r <= CP_NULL_NOT_REPRODUCED; r++)
         json_object_set_new(reasons, cp_null_status_text((cp_null_status)r),
@@ -290,7 +291,7 @@ static json_t *counterfactual_json(const cp_study_data *data, const cp_counterfa
         const char *name = cp_outcome_text((cp_outcome)o);
         json_object_set_new(inside, name, json_integer((json_int_t)c->inside_outcome[o]));
         if (o != CP_OUTCOME_INVALID)
-            json_object_set_new(inside_shares, name, interval_json(c->inside_share[o]));
+            json_object_set_new(inside_shares, name, cp_interval_json(c->inside_share[o]));
     }
     json_t *of_inside =
         json_pack("{s:I, s:I, s:I, s:o, s:o, s:o}", "crashes", (json_int_t)c->inside_crashes,

@@ -12,5 +12,7 @@
  * interval {"status": "value", "low": x, "high": y}, null where it is open. The caller releases
  * it; NULL when memory is gone. */
 json_t *cp_comparison_json(const cp_study_data *data, const cp_comparison *comparison);
+/* An interval as there. */
+json_t *cp_interval_json(cp_interval interval);
 
 #endif

@@ -29,14 +29,6 @@ static bool crashes_again(const cp_study_pair *pair)
            pair->outcome == CP_OUTCOME_UNCHANGED;
 }
 
-static size_t cluster_of(const cp_replication_set *set, size_t replication)
-{
-    for (size_t k = 0; k < set->count; k++)
-        if (set->replication[k] == replication)
-            return k;
-    return SIZE_MAX;
-}
-
 static void gather(pairs *p, size_t variant)
 {
     p->count = 0;
@@ -49,7 +41,7 @@ static void gather(pairs *p, size_t variant)
             continue;
         if (crash->replication != last) { // pairs come replication by replication
             last = crash->replication;
-            cluster = cluster_of(p->set, last);
+            cluster = cp_replication_set_cluster(p->set, last);
         }
         if (cluster == SIZE_MAX)
             continue;
@@ -280,7 +272,6 @@ static cp_status figure_benefit(const pairs *p, cp_counterfactual_figures *figur
         benefit->benefit_1 = 1.0 - cp_rate(&ratio);
         cp_interval interval;
         status = cp_rate_bootstrap(&ratio, p->set->stratum, p->data->seed, &interval, error);
-        benefit->with_parameters = function->has_covariance;
         benefit->parameters_se_1 = cp_injury_ratio_se(function, &sum[0], &sum[1]);
         interval = cp_risk_widened(1.0 - benefit->benefit_1, interval, benefit->parameters_se_1,
                                    function->freedom);

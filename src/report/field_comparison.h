@@ -99,7 +99,7 @@ void cp_field_quantities_of_variant(const cp_study_data *data, const cp_field_va
 void cp_field_quantities_of_contrast(const cp_study_data *data, const cp_field_contrast *field,
                                      cp_quantities *list);
 
-/* As JSON; null without a field. NULL when memory is gone. */
+/* As JSON, NULL when memory is gone. */
 json_t *cp_field_variant_json(const cp_study_data *data, const cp_field_variant *field);
 json_t *cp_field_contrast_json(const cp_study_data *data, const cp_field_contrast *field);
 

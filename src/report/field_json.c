@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/comparison_json.h"
 #include "report/field_comparison.h"
 #include "report/query_json.h"
-
-static json_t *interval_json(cp_interval i)
-{
-    return json_pack("{s:s, s:o, s:o}", "status", cp_interval_status_text(i.status), "low",
-                     cp_number_json(i.low), "high", cp_number_json(i.high));
-}
 
 // A figure weighted and not.
 static json_t *both_json(const double value[2], const cp_interval interval[2])
 {
     return json_pack("{s:o, s:o, s:o, s:o}", "value", cp_number_json(value[1]), "interval",
-                     interval_json(interval[1]), "not_weighted", cp_number_json(value[0]),
-                     "not_weighted_interval", interval_json(interval[0]));
+                     cp_interval_json(interval[1]), "not_weighted", cp_number_json(value[0]),
+                     "not_weighted_interval", cp_interval_json(interval[0]));
 }
 
 static json_t *classes_json(const cp_field_shape *s, int margin)
@@ -91,8 +86,6 @@ static json_t *injured_json(const cp_study_data *data, const double *const value
 
 json_t *cp_field_variant_json(const cp_study_data *data, const cp_field_variant *field)
 {
-    if (!field)
-        return json_null();
     const cp_raked_arm_figures *f = field->figures;
     const double *rate[2] = {f[0].rate, f[1].rate};
     const cp_interval *interval[2] = {f[0].rate_interval, f[1].rate_interval};
@@ -122,15 +115,13 @@ static json_t *ratio_json(const cp_field_contrast *c, size_t event)
         json_object_set_new(figure, "by_delta_v_too",
                             cp_number_json(f[CP_FIELD_DELTA_V_TOO].ratio[event]));
         json_object_set_new(figure, "by_delta_v_too_interval",
-                            interval_json(f[CP_FIELD_DELTA_V_TOO].ratio_interval[event]));
+                            cp_interval_json(f[CP_FIELD_DELTA_V_TOO].ratio_interval[event]));
     }
     return figure;
 }
 
 json_t *cp_field_contrast_json(const cp_study_data *data, const cp_field_contrast *field)
 {
-    if (!field)
-        return json_null();
     const cp_raked_figures *f = field->figures;
     json_t *above = json_object(), *injured = json_array();
     for (int what = 0; what < CP_EXCEEDED_COUNT; what++) {

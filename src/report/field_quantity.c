@@ -2,7 +2,6 @@
 #include "report/field_comparison.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 
 static const char SECTION[] = "weighted as the field";
@@ -15,23 +14,6 @@ static const struct {
     double factor; /* over SI */
 } ABOVE[CP_EXCEEDED_COUNT] = {{"olc", "OLC", "g", 1.0},
                               {"delta_v_without_rebound", "delta-v without rebound", "km/h", 3.6}};
-
-static const char *named(char text[CP_QUANTITY_TEXT_SIZE], const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static const char *named(char text[CP_QUANTITY_TEXT_SIZE], const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, CP_QUANTITY_TEXT_SIZE, format, list);
-    va_end(list);
-    return text;
-}
-
-static double rounded(double x)
-{
-    return round(x * 1e6) / 1e6;
-}
 
 static void set_interval(cp_quantity *q, cp_interval interval, const char *kind)
 {
@@ -62,7 +44,7 @@ static void add_ways(cp_quantities *list, const char *name, const char *label, i
             continue;
         double value = w->value[way];
         cp_quantity *q = cp_quantities_add(
-            list, SECTION, named(own, "%.66s_%s", name, w->suffix[way]),
+            list, SECTION, cp_quantity_text(own, "%.66s_%s", name, w->suffix[way]),
             LABEL[way] ? LABEL[way] : label, digits, factor, isfinite(value) ? value : NAN);
         if (isinf(value) && value < 0.0)
             q->missing = cp_interval_status_text(CP_INTERVAL_CENSORED);
@@ -88,11 +70,6 @@ static void add_both(cp_quantities *list, const cp_field_variant *v, const char 
     add_ways(list, name, label, digits, 1.0, &w, kind);
 }
 
-static const char *injured_kind(const cp_study_risk *risk)
-{
-    return risk->function.has_covariance ? "bootstrap and risk function" : "bootstrap";
-}
-
 // ---- a variant's vehicles beside the field's: CSV and database only -----------------------------
 
 static void add_shape(cp_quantities *list, const cp_field_shape *s)
@@ -107,26 +84,30 @@ static void add_shape(cp_quantities *list, const cp_field_shape *s)
             const double share[] = {c->field_1, c->study_1, c->weighted_1};
             for (int of = 0; of < 3; of++)
                 cp_quantities_add(list, SECTION,
-                                  named(name, "share_%s_1_%s %s", OF[of], CP_FIELD_MARGIN_TEXT[m],
-                                        cp_field_class_text((cp_field_margin)m, k)),
+                                  cp_quantity_text(name, "share_%s_1_%s %s", OF[of],
+                                                   CP_FIELD_MARGIN_TEXT[m],
+                                                   cp_field_class_text((cp_field_margin)m, k)),
                                   "", 3, 1.0, share[of]);
         }
     for (int d = 0; d < 2; d++)
-        cp_quantities_add(list, SECTION,
-                          named(name, "crash_type_distance_1_%s", d ? "as_field" : "study"), "", 3,
-                          1.0, s->type_distance_1[d]);
+        cp_quantities_add(
+            list, SECTION,
+            cp_quantity_text(name, "crash_type_distance_1_%s", d ? "as_field" : "study"), "", 3,
+            1.0, s->type_distance_1[d]);
     for (int v = 0; v < CP_FIELD_VALUE_COUNT; v++) {
         const cp_field_number *n = &s->number[v];
         for (int of = 0; of < 3; of++)
-            cp_quantities_add(list, SECTION, named(name, "median_%s_%s", NUMBER[v], OF[of]), "", 1,
-                              1.0, n->median[of]);
+            cp_quantities_add(list, SECTION,
+                              cp_quantity_text(name, "median_%s_%s", NUMBER[v], OF[of]), "", 1, 1.0,
+                              n->median[of]);
         for (int d = 0; d < 2; d++) {
+            cp_quantities_add(
+                list, SECTION,
+                cp_quantity_text(name, "largest_distance_1_%s_%s", NUMBER[v], OF[d + 1]), "", 3,
+                1.0, n->distance[d].largest_1);
             cp_quantities_add(list, SECTION,
-                              named(name, "largest_distance_1_%s_%s", NUMBER[v], OF[d + 1]), "", 3,
-                              1.0, n->distance[d].largest_1);
-            cp_quantities_add(list, SECTION,
-                              named(name, "mean_distance_%s_%s", NUMBER[v], OF[d + 1]), "", 2, 1.0,
-                              n->distance[d].mean);
+                              cp_quantity_text(name, "mean_distance_%s_%s", NUMBER[v], OF[d + 1]),
+                              "", 2, 1.0, n->distance[d].mean);
         }
     }
     cp_quantities_add(list, SECTION, "field_never_made_1", "", 3, 1.0, s->never_made_1);
@@ -156,23 +137,25 @@ void cp_field_quantities_of_variant(const cp_study_data *data, const cp_field_va
             (cp_interval[]){f[0].quantile_interval[q], f[1].quantile_interval[q]}, "bootstrap");
     for (int what = 0; what < CP_EXCEEDED_COUNT; what++) {
         int e = CP_FIELD_ABOVE + what;
-        double x = rounded(field->above[what] * ABOVE[what].factor);
+        double x = cp_quantity_rounded(field->above[what] * ABOVE[what].factor);
         add_both(list, field,
-                 named(name, "crashes_%s_above_%g_per_million_km", ABOVE[what].name, x),
-                 named(label, "  crashes above %s %g %s per 10^6 veh-km", ABOVE[what].label, x,
-                       ABOVE[what].unit),
+                 cp_quantity_text(name, "crashes_%s_above_%g_per_million_km", ABOVE[what].name, x),
+                 cp_quantity_text(label, "  crashes above %s %g %s per 10^6 veh-km",
+                                  ABOVE[what].label, x, ABOVE[what].unit),
                  0, (double[]){f[0].rate[e], f[1].rate[e]},
                  (cp_interval[]){f[0].rate_interval[e], f[1].rate_interval[e]}, "bootstrap");
     }
     for (size_t k = 0; k < data->risk_count; k++) {
         const cp_study_risk *risk = &data->risk[k];
         size_t e = CP_FIELD_INJURED + k;
-        add_both(
-            list, field,
-            named(name, "expected_injured_per_million_km_%.24s_%.12s", risk->name, risk->level),
-            named(label, "  %.20s (%.30s) expected per 10^6 veh-km", risk->level, risk->name), 1,
-            (double[]){f[0].rate[e], f[1].rate[e]},
-            (cp_interval[]){f[0].rate_interval[e], f[1].rate_interval[e]}, injured_kind(risk));
+        add_both(list, field,
+                 cp_quantity_text(name, "expected_injured_per_million_km_%.24s_%.12s", risk->name,
+                                  risk->level),
+                 cp_quantity_text(label, "  %.20s (%.30s) expected per 10^6 veh-km", risk->level,
+                                  risk->name),
+                 1, (double[]){f[0].rate[e], f[1].rate[e]},
+                 (cp_interval[]){f[0].rate_interval[e], f[1].rate_interval[e]},
+                 cp_injury_kind(risk));
     }
 }
 
@@ -228,19 +211,20 @@ void cp_field_quantities_of_contrast(const cp_study_data *data, const cp_field_c
                       (double)field->unlike);
     add_ratio(list, field, CP_FIELD_CRASH, "rate_ratio", "  rate ratio of frontal crashes");
     for (int what = 0; what < CP_EXCEEDED_COUNT; what++) {
-        double x = rounded(field->above[what] * ABOVE[what].factor);
-        add_ratio(
-            list, field, (size_t)CP_FIELD_ABOVE + (size_t)what,
-            named(name, "rate_ratio_%s_above_%g", ABOVE[what].name, x),
-            named(label, "  rate ratio above %s %g %s", ABOVE[what].label, x, ABOVE[what].unit));
+        double x = cp_quantity_rounded(field->above[what] * ABOVE[what].factor);
+        add_ratio(list, field, (size_t)CP_FIELD_ABOVE + (size_t)what,
+                  cp_quantity_text(name, "rate_ratio_%s_above_%g", ABOVE[what].name, x),
+                  cp_quantity_text(label, "  rate ratio above %s %g %s", ABOVE[what].label, x,
+                                   ABOVE[what].unit));
     }
     add_difference(list, field, CP_RAKED_MEDIAN, "olc_median_difference_g",
                    "  OLC, g, difference of medians");
     for (size_t k = 0; k < data->risk_count; k++) {
         const cp_study_risk *risk = &data->risk[k];
-        add_benefit(list, field, CP_FIELD_INJURED + k,
-                    named(name, "benefit_1_%.24s_%.12s", risk->name, risk->level),
-                    named(label, "  benefit, %%, %.20s (%.30s)", risk->level, risk->name),
-                    injured_kind(risk));
+        add_benefit(
+            list, field, CP_FIELD_INJURED + k,
+            cp_quantity_text(name, "benefit_1_%.24s_%.12s", risk->name, risk->level),
+            cp_quantity_text(label, "  benefit, %%, %.20s (%.30s)", risk->level, risk->name),
+            cp_injury_kind(risk));
     }
 }

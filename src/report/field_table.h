@@ -3,6 +3,7 @@
 #define REPORT_FIELD_TABLE_H
 
 #include "core/error.h"
+#include "stats/raking.h"
 
 #include <stddef.h>
 
@@ -22,7 +23,7 @@ typedef enum cp_field_margin {
         CP_FIELD_MARGIN_COUNT
 } cp_field_margin;
 
-enum { CP_FIELD_CLASSES_MAX = 9, CP_FIELD_UNKNOWN = 255 };
+enum { CP_FIELD_CLASSES_MAX = 9, CP_FIELD_UNKNOWN = CP_RAKING_UNKNOWN };
 
 extern const char *const CP_FIELD_MARGIN_TEXT[CP_FIELD_MARGIN_COUNT];
 extern const size_t CP_FIELD_MARGIN_CLASSES[CP_FIELD_MARGIN_COUNT];

@@ -9,10 +9,8 @@
 
 static const cp_field_variant *baseline_of(const cp_comparison *comparison)
 {
-    for (size_t k = 0; k < comparison->variant_count; k++)
-        if (comparison->variant[k].variant == comparison->baseline)
-            return comparison->variant[k].field;
-    return NULL;
+    const cp_variant_figures *figures = cp_comparison_variant(comparison, comparison->baseline);
+    return figures ? figures->field : NULL;
 }
 
 static void write_apart(FILE *out, const cp_field_shape *s, const char *name)

@@ -82,17 +82,18 @@ static void add_interval(const writer *w, const char *name, const char *label, i
     q->interval = interval;
 }
 
-// A name of parts: "olc" + "_median" + "_g".
-static const char *named(char text[CP_QUANTITY_TEXT_SIZE], const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static const char *named(char text[CP_QUANTITY_TEXT_SIZE], const char *format, ...)
+const char *cp_quantity_text(char text[CP_QUANTITY_TEXT_SIZE], const char *format, ...)
 {
     va_list list;
     va_start(list, format);
     vsnprintf(text, CP_QUANTITY_TEXT_SIZE, format, list);
     va_end(list);
     return text;
+}
+
+double cp_quantity_rounded(double x)
+{
+    return round(x * 1e6) / 1e6;
 }
 
 /* How the quantities are called, in the order of cp_slice_quantity. */
@@ -134,11 +135,12 @@ static void add_description(const writer *w, int q, const cp_description *d,
         {"p90", "  90 %", true, d->p90},          {"p95", "  95 %", false, d->p95},
         {"max", "  max", false, d->maximum},
     };
-    add(&count, named(name, "%s_n", of), whole && labelled ? "  n" : NULL, 0, counted(d->count));
-    add(&count, named(name, "%s_censored", of), whole && labelled ? "  left-censored" : NULL, 0,
-        counted(d->censored));
+    add(&count, cp_quantity_text(name, "%s_n", of), whole && labelled ? "  n" : NULL, 0,
+        counted(d->count));
+    add(&count, cp_quantity_text(name, "%s_censored", of),
+        whole && labelled ? "  left-censored" : NULL, 0, counted(d->censored));
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
-        add(w, named(name, "%s_%s_%s", of, rows[k].part, unit),
+        add(w, cp_quantity_text(name, "%s_%s_%s", of, rows[k].part, unit),
             labelled && (whole || rows[k].always) ? rows[k].label : NULL, digits, rows[k].estimate);
     if (mean_interval) {
         cp_quantity *mean = last(w->list, sizeof rows / sizeof *rows);
@@ -189,34 +191,33 @@ static const struct {
 // "olc_above_15_g".
 static const char *exceeded_name(int what, double x, char text[CP_QUANTITY_TEXT_SIZE])
 {
-    return named(text, "%s_above_%g_%s", CP_EXCEEDED_TEXT[what],
-                 round(x * EXCEEDED[what].factor * 1e6) / 1e6, EXCEEDED[what].unit);
+    return cp_quantity_text(text, "%s_above_%g_%s", CP_EXCEEDED_TEXT[what],
+                            cp_quantity_rounded(x * EXCEEDED[what].factor), EXCEEDED[what].unit);
 }
 
 static const char *exceeded_label(int what, double x, char text[CP_QUANTITY_TEXT_SIZE])
 {
-    return named(text, "frontal crashes above %s %g %s", EXCEEDED[what].label,
-                 round(x * EXCEEDED[what].factor * 1e6) / 1e6,
-                 what == CP_EXCEEDED_DELTA_V ? "km/h" : "g");
+    return cp_quantity_text(text, "frontal crashes above %s %g %s", EXCEEDED[what].label,
+                            cp_quantity_rounded(x * EXCEEDED[what].factor),
+                            what == CP_EXCEEDED_DELTA_V ? "km/h" : "g");
 }
 
 static void add_exceedance(const writer *w, int what, const cp_exceedance *e)
 {
     char of[CP_QUANTITY_TEXT_SIZE], name[CP_QUANTITY_TEXT_SIZE], label[CP_QUANTITY_TEXT_SIZE];
     exceeded_name(what, e->x, of);
-    add(w, named(name, "crashes_%.60s", of), exceeded_label(what, e->x, label), 0,
+    add(w, cp_quantity_text(name, "crashes_%.60s", of), exceeded_label(what, e->x, label), 0,
         counted(e->crashes));
-    add_interval(w, named(name, "crashes_%.60s_per_million_km", of), "  per 10^6 veh-km", 0,
-                 cp_estimate_of(e->rate), "poisson widened", e->interval);
-    add(w, named(name, "crashes_%.60s_at_least", of), "  at least, outside range unknown", 0,
-        counted(e->least));
-    add(w, named(name, "crashes_%.60s_at_most", of), "  at most", 0, counted(e->most));
+    add_interval(w, cp_quantity_text(name, "crashes_%.60s_per_million_km", of), "  per 10^6 veh-km",
+                 0, cp_estimate_of(e->rate), "poisson widened", e->interval);
+    add(w, cp_quantity_text(name, "crashes_%.60s_at_least", of),
+        "  at least, outside range unknown", 0, counted(e->least));
+    add(w, cp_quantity_text(name, "crashes_%.60s_at_most", of), "  at most", 0, counted(e->most));
 }
 
-// What the interval of expected injuries holds.
-static const char *injury_kind(bool with_parameters)
+const char *cp_injury_kind(const cp_study_risk *risk)
 {
-    return with_parameters ? "bootstrap and risk function" : "bootstrap";
+    return risk->function.has_covariance ? "bootstrap and risk function" : "bootstrap";
 }
 
 static void add_injuries(const cp_study_data *data, writer w, const cp_injury_figures *injury)
@@ -225,15 +226,19 @@ static void add_injuries(const cp_study_data *data, writer w, const cp_injury_fi
     w.section = "injured drivers expected per 10^6 veh-km";
     for (size_t k = 0; k < data->risk_count; k++) {
         const cp_study_risk *risk = &data->risk[k];
-        add(&w, named(name, "expected_injured_%.30s_%.20s", risk->name, risk->level), NULL, 2,
-            cp_estimate_of(injury[k].expected));
-        add_interval(
-            &w, named(name, "expected_injured_per_million_km_%.30s_%.20s", risk->name, risk->level),
-            w.scope == CP_SCOPE_INSIDE ? NULL
-                                       : named(label, "  %.30s (%.30s)", risk->level, risk->name),
-            1, cp_estimate_of(injury[k].rate), injury_kind(injury[k].with_parameters),
-            injury[k].rate_interval);
-        add(&w, named(name, "expected_injured_risk_se_1_%.30s_%.20s", risk->name, risk->level),
+        add(&w, cp_quantity_text(name, "expected_injured_%.30s_%.20s", risk->name, risk->level),
+            NULL, 2, cp_estimate_of(injury[k].expected));
+        add_interval(&w,
+                     cp_quantity_text(name, "expected_injured_per_million_km_%.30s_%.20s",
+                                      risk->name, risk->level),
+                     w.scope == CP_SCOPE_INSIDE
+                         ? NULL
+                         : cp_quantity_text(label, "  %.30s (%.30s)", risk->level, risk->name),
+                     1, cp_estimate_of(injury[k].rate), cp_injury_kind(risk),
+                     injury[k].rate_interval);
+        add(&w,
+            cp_quantity_text(name, "expected_injured_risk_se_1_%.30s_%.20s", risk->name,
+                             risk->level),
             NULL, 3, cp_estimate_of(injury[k].parameters_se_1));
     }
 }
@@ -255,19 +260,19 @@ static void add_model_part(const writer *w, const model_names *n, const cp_model
         return;
     const char *missing =
         part->status == CP_INTERVAL_VALUE ? NULL : cp_interval_status_text(part->status);
-    add_interval(w, named(name, "%s_with_model%s", n->of, n->unit), n->label, n->digits,
+    add_interval(w, cp_quantity_text(name, "%s_with_model%s", n->of, n->unit), n->label, n->digits,
                  part->estimate, "replications and model", part->combined);
-    add_interval(w, named(name, "%s_by_replications%s", n->of, n->unit), NULL, n->digits,
+    add_interval(w, cp_quantity_text(name, "%s_by_replications%s", n->of, n->unit), NULL, n->digits,
                  part->estimate, n->kind, part->replications);
     last(w->list, 1)->second = true;
-    add(w, named(name, "%s_model_half_width%s", n->of, n->unit), "    95 % half-width, model",
-        n->digits, cp_estimate_of(part->half_width));
+    add(w, cp_quantity_text(name, "%s_model_half_width%s", n->of, n->unit),
+        "    95 % half-width, model", n->digits, cp_estimate_of(part->half_width));
     last(w->list, 1)->missing = missing;
-    add(w, named(name, "%s_model_sd%s", n->of, n->unit), "    sd over parameter sets",
+    add(w, cp_quantity_text(name, "%s_model_sd%s", n->of, n->unit), "    sd over parameter sets",
         n->digits + 1, cp_estimate_of(part->sd));
     last(w->list, 1)->missing = missing;
-    add(w, named(name, "%s_model_mean%s", n->of, n->unit), "    mean over parameter sets",
-        n->digits, cp_estimate_of(part->mean));
+    add(w, cp_quantity_text(name, "%s_model_mean%s", n->of, n->unit),
+        "    mean over parameter sets", n->digits, cp_estimate_of(part->mean));
     last(w->list, 1)->missing = missing;
 }
 
@@ -334,19 +339,23 @@ static void add_contrast(const writer *w, int q, const cp_contrast_figures *figu
     static const char *const SIDE[] = {"baseline", "treatment"};
     for (int g = 0; g < 2; g++) {
         char label[CP_QUANTITY_TEXT_SIZE];
-        add(&pure, named(name, "%s_n_compared_%s", of, SIDE[g]), NULL, 0, counted(c->compared[g]));
-        add(w, named(name, "%s_median_%s_%s", of, SIDE[g], unit),
-            named(label, "  median, %s, same mix of scenarios", SIDE[g]), digits, c->median[g]);
+        add(&pure, cp_quantity_text(name, "%s_n_compared_%s", of, SIDE[g]), NULL, 0,
+            counted(c->compared[g]));
+        add(w, cp_quantity_text(name, "%s_median_%s_%s", of, SIDE[g], unit),
+            cp_quantity_text(label, "  median, %s, same mix of scenarios", SIDE[g]), digits,
+            c->median[g]);
     }
-    add_interval(w, named(name, "%s_median_difference_%s", of, unit), "  difference of medians",
-                 digits, c->median_difference, "bootstrap", c->median_interval);
-    add_interval(w, named(name, "%s_mean_difference_%s", of, unit), "  difference of means", digits,
-                 c->mean_difference, "bootstrap", c->mean_interval);
-    add_interval(w, named(name, "%s_p90_difference_%s", of, unit),
+    add_interval(w, cp_quantity_text(name, "%s_median_difference_%s", of, unit),
+                 "  difference of medians", digits, c->median_difference, "bootstrap",
+                 c->median_interval);
+    add_interval(w, cp_quantity_text(name, "%s_mean_difference_%s", of, unit),
+                 "  difference of means", digits, c->mean_difference, "bootstrap",
+                 c->mean_interval);
+    add_interval(w, cp_quantity_text(name, "%s_p90_difference_%s", of, unit),
                  whole ? "  difference of 90 % quantiles" : NULL, digits, c->p90_difference,
                  "bootstrap", c->p90_interval);
     const cp_superiority *s = &c->superiority;
-    add_interval(&pure, named(name, "%s_cliffs_delta", of), "  Cliff's delta", 2,
+    add_interval(&pure, cp_quantity_text(name, "%s_cliffs_delta", of), "  Cliff's delta", 2,
                  cp_estimate_of(s->cliffs_delta), "jackknife", s->interval);
     if (q == CP_QUANTITY_OLC) {
         const cp_superiority *bound = figures->olc_bound;
@@ -355,17 +364,17 @@ static void add_contrast(const writer *w, int q, const cp_contrast_figures *figu
         add_interval(&pure, "olc_cliffs_delta_at_most", "    at most", 2,
                      cp_estimate_of(bound[1].cliffs_delta), "jackknife", bound[1].interval);
     }
-    add_test(&pure, named(name, "%s_mann_whitney_p", of), "  p (Mann-Whitney, studentised)", s->p,
-             s->status);
-    add(&pure, named(name, "%s_mann_whitney_p_holm", of), "  p, Holm", 4,
+    add_test(&pure, cp_quantity_text(name, "%s_mann_whitney_p", of),
+             "  p (Mann-Whitney, studentised)", s->p, s->status);
+    add(&pure, cp_quantity_text(name, "%s_mann_whitney_p_holm", of), "  p, Holm", 4,
         cp_estimate_of(figures->severity_p_holm[q]));
-    add(&pure, named(name, "%s_kolmogorov_smirnov_d", of),
+    add(&pure, cp_quantity_text(name, "%s_kolmogorov_smirnov_d", of),
         whole ? "  largest distance of ECDFs" : NULL, 2, cp_estimate_of(c->distance));
-    add_test(&pure, named(name, "%s_kolmogorov_smirnov_p", of),
+    add_test(&pure, cp_quantity_text(name, "%s_kolmogorov_smirnov_p", of),
              whole ? "  p (Kolmogorov-Smirnov, bootstrap)" : NULL, c->distance_p,
              s->status == CP_INTERVAL_VALUE ? CP_INTERVAL_TOO_FEW_REPLICATIONS : s->status);
-    add(&pure, named(name, "%s_kolmogorov_smirnov_p_holm", of), whole ? "  p, Holm" : NULL, 4,
-        cp_estimate_of(figures->distance_p_holm[q]));
+    add(&pure, cp_quantity_text(name, "%s_kolmogorov_smirnov_p_holm", of),
+        whole ? "  p, Holm" : NULL, 4, cp_estimate_of(figures->distance_p_holm[q]));
 }
 
 static cp_estimate bounded(double bound)
@@ -380,13 +389,15 @@ static void add_benefits(const cp_study_data *data, const writer *w,
     const writer percent = {w->list, "benefit, % fewer injured drivers expected", w->scope, 100.0};
     for (size_t k = 0; k < data->risk_count; k++) {
         const cp_study_risk *risk = &data->risk[k];
-        add_interval(&percent, named(name, "benefit_1_%.30s_%.30s", risk->name, risk->level),
-                     named(label, "  %.30s (%.30s)", risk->level, risk->name), 1,
-                     cp_estimate_of(benefit[k].benefit_1), injury_kind(benefit[k].with_parameters),
-                     benefit[k].interval);
-        add(&percent, named(name, "benefit_at_least_1_%.30s_%.30s", risk->name, risk->level),
+        add_interval(
+            &percent, cp_quantity_text(name, "benefit_1_%.30s_%.30s", risk->name, risk->level),
+            cp_quantity_text(label, "  %.30s (%.30s)", risk->level, risk->name), 1,
+            cp_estimate_of(benefit[k].benefit_1), cp_injury_kind(risk), benefit[k].interval);
+        add(&percent,
+            cp_quantity_text(name, "benefit_at_least_1_%.30s_%.30s", risk->name, risk->level),
             "    at least, outside range unknown", 1, bounded(benefit[k].bound[0]));
-        add(&percent, named(name, "benefit_at_most_1_%.30s_%.30s", risk->name, risk->level),
+        add(&percent,
+            cp_quantity_text(name, "benefit_at_most_1_%.30s_%.30s", risk->name, risk->level),
             "    at most", 1, bounded(benefit[k].bound[1]));
     }
 }
@@ -426,13 +437,14 @@ void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figu
         char text[CP_QUANTITY_TEXT_SIZE];
         const cp_exceedance_ratio *r = &figures->above[what];
         exceeded_name(what, r->x, of);
-        add_interval(&w, named(name, "rate_ratio_%.60s", of),
-                     named(label, "rate ratio of %.60s", exceeded_label(what, r->x, text)), 2,
-                     cp_estimate_of(r->ratio), "poisson widened", r->interval);
-        add_interval(&w, named(name, "rate_ratio_%.60s_at_least", of),
+        add_interval(
+            &w, cp_quantity_text(name, "rate_ratio_%.60s", of),
+            cp_quantity_text(label, "rate ratio of %.60s", exceeded_label(what, r->x, text)), 2,
+            cp_estimate_of(r->ratio), "poisson widened", r->interval);
+        add_interval(&w, cp_quantity_text(name, "rate_ratio_%.60s_at_least", of),
                      "    at least, outside range unknown", 2, bounded(r->bound[0]),
                      "poisson widened", r->bound_interval[0]);
-        add_interval(&w, named(name, "rate_ratio_%.60s_at_most", of), "    at most", 2,
+        add_interval(&w, cp_quantity_text(name, "rate_ratio_%.60s_at_most", of), "    at most", 2,
                      bounded(r->bound[1]), "poisson widened", r->bound_interval[1]);
     }
     w.scope = CP_SCOPE_ALL;
@@ -454,21 +466,23 @@ static void add_paired(const writer *w, const char *of, const char *unit, const 
 {
     char name[CP_QUANTITY_TEXT_SIZE];
     const writer pure = {w->list, w->section, -1, 1.0};
-    add(&pure, named(name, "paired_%s_%s_n", of, which), "  pairs", 0, counted(paired->count));
-    add_interval(w, named(name, "paired_%s_%s_hodges_lehmann_%s", of, which, unit),
+    add(&pure, cp_quantity_text(name, "paired_%s_%s_n", of, which), "  pairs", 0,
+        counted(paired->count));
+    add_interval(w, cp_quantity_text(name, "paired_%s_%s_hodges_lehmann_%s", of, which, unit),
                  "  change, Hodges-Lehmann", 1, cp_estimate_of(paired->hodges_lehmann), "bootstrap",
                  paired->hodges_lehmann_interval);
-    add_interval(w, named(name, "paired_%s_%s_mean_%s", of, which, unit), "  mean change", 1,
-                 cp_estimate_of(paired->mean), "bootstrap", paired->mean_interval);
-    add(&pure, named(name, "paired_%s_%s_lower", of, which), "  pairs with less", 0,
+    add_interval(w, cp_quantity_text(name, "paired_%s_%s_mean_%s", of, which, unit),
+                 "  mean change", 1, cp_estimate_of(paired->mean), "bootstrap",
+                 paired->mean_interval);
+    add(&pure, cp_quantity_text(name, "paired_%s_%s_lower", of, which), "  pairs with less", 0,
         counted(paired->lower));
-    add(&pure, named(name, "paired_%s_%s_higher", of, which), "  pairs with more", 0,
+    add(&pure, cp_quantity_text(name, "paired_%s_%s_higher", of, which), "  pairs with more", 0,
         counted(paired->higher));
-    add(&pure, named(name, "paired_%s_%s_signed_rank_v", of, which), NULL, 1,
+    add(&pure, cp_quantity_text(name, "paired_%s_%s_signed_rank_v", of, which), NULL, 1,
         cp_estimate_of(paired->signed_rank.statistic));
-    add(&pure, named(name, "paired_%s_%s_signed_rank_p", of, which),
+    add(&pure, cp_quantity_text(name, "paired_%s_%s_signed_rank_p", of, which),
         "  p (signed rank, by replication)", 4, cp_estimate_of(paired->signed_rank.p));
-    add(&pure, named(name, "paired_%s_%s_signed_rank_p_holm", of, which), "  p, Holm", 4,
+    add(&pure, cp_quantity_text(name, "paired_%s_%s_signed_rank_p_holm", of, which), "  p, Holm", 4,
         cp_estimate_of(p_holm));
 }
 
@@ -484,8 +498,9 @@ static void add_pairs_inside(const writer *w, const cp_counterfactual_figures *f
         counted(figures->inside_treated_outside));
     for (int o = CP_OUTCOME_CHANGED_OPPONENT; o < CP_OUTCOME_NO_OLC; o++) {
         double valid = figures->inside_valid ? (double)figures->inside_valid : NAN;
-        add_interval(&in, named(name, "inside_share_%s_1", cp_outcome_text((cp_outcome)o)),
-                     named(label, "  share %s", cp_outcome_text((cp_outcome)o)), 2,
+        add_interval(&in,
+                     cp_quantity_text(name, "inside_share_%s_1", cp_outcome_text((cp_outcome)o)),
+                     cp_quantity_text(label, "  share %s", cp_outcome_text((cp_outcome)o)), 2,
                      cp_estimate_of((double)figures->inside_outcome[o] / valid), "binomial widened",
                      figures->inside_share[o]);
     }
@@ -502,22 +517,23 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
     add(&w, "pairs", "frontal crashes of the baseline", 0, counted(figures->crashes));
     add(&w, "valid_pairs", "  valid pairs", 0, counted(figures->valid));
     for (int o = 0; o < CP_OUTCOME_NO_OLC; o++)
-        add(&w, named(name, "outcome_%s", cp_outcome_text((cp_outcome)o)),
-            named(label, "  %s", cp_outcome_text((cp_outcome)o)), 0, counted(figures->outcome[o]));
+        add(&w, cp_quantity_text(name, "outcome_%s", cp_outcome_text((cp_outcome)o)),
+            cp_quantity_text(label, "  %s", cp_outcome_text((cp_outcome)o)), 0,
+            counted(figures->outcome[o]));
     for (int o = 0; o <= CP_OUTCOME_NO_OLC; o++)
-        add(&w, named(name, "outcome_by_olc_%s", cp_outcome_text((cp_outcome)o)),
+        add(&w, cp_quantity_text(name, "outcome_by_olc_%s", cp_outcome_text((cp_outcome)o)),
             o == CP_OUTCOME_AGGRAVATED ? "  aggravated by OLC" : NULL, 0,
             counted(figures->outcome_olc[o]));
     for (int o = CP_OUTCOME_CHANGED_OPPONENT; o < CP_OUTCOME_NO_OLC; o++) {
         double share = figures->valid ? (double)figures->outcome[o] / (double)figures->valid : NAN;
-        add_interval(&w, named(name, "share_%s_1", cp_outcome_text((cp_outcome)o)),
-                     named(label, "  share %s", cp_outcome_text((cp_outcome)o)), 2,
+        add_interval(&w, cp_quantity_text(name, "share_%s_1", cp_outcome_text((cp_outcome)o)),
+                     cp_quantity_text(label, "  share %s", cp_outcome_text((cp_outcome)o)), 2,
                      cp_estimate_of(share), "binomial widened", figures->share[o]);
     }
     add_pairs_inside(&w, figures);
     for (int r = CP_NULL_REPRODUCED + 1; r <= CP_NULL_NOT_REPRODUCED; r++)
-        add(&w, named(name, "invalid_%s", cp_null_status_text((cp_null_status)r)), NULL, 0,
-            counted(figures->reason[r]));
+        add(&w, cp_quantity_text(name, "invalid_%s", cp_null_status_text((cp_null_status)r)), NULL,
+            0, counted(figures->reason[r]));
     add(&w, "new_crashes", "new crashes between others", 0, cp_estimate_of(figures->new_crashes));
     add(&w, "vanished_crashes", "crashes between others that vanish", 0,
         cp_estimate_of(figures->vanished_crashes));
@@ -530,7 +546,7 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
         w.section = OLC[which];
         add_paired(&w, "olc", "g", CP_PAIRED_TEXT[which], &figures->olc_g[which],
                    figures->p_holm[which]);
-        named(name, "paired_olc_%s_hodges_lehmann", CP_PAIRED_TEXT[which]);
+        cp_quantity_text(name, "paired_olc_%s_hodges_lehmann", CP_PAIRED_TEXT[which]);
         add_model_part(&w, &(model_names){name, "_g", "  change, Hodges-Lehmann", "bootstrap", 1},
                        &figures->olc_model[which]);
     }

@@ -49,6 +49,14 @@ void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figu
 void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_figures *figures,
                             cp_quantities *list);
 
+/* A name or label of parts, cut at the end; returns text. */
+const char *cp_quantity_text(char text[CP_QUANTITY_TEXT_SIZE], const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/* A severity in the unit of the table, rid of what converting left behind. */
+double cp_quantity_rounded(double x);
+/* What the interval of injured drivers by a risk function holds: static text. */
+const char *cp_injury_kind(const cp_study_risk *risk);
+
 /* "", "=", "<", ">". */
 const char *cp_relation_text(cp_relation relation);
 

@@ -59,7 +59,8 @@ CP_MUST_CHECK cp_status cp_crash_record_fill(const cp_impact *impact, const cp_i
                                              cp_crash_row *row, cp_error *error);
 
 /* Fill row, zeroed before, with what is known of the same crash: same vehicles and types, same
- * impact to the bit, same earlier crashes. Only who errs is taken from names. Error: CP_NO_MEMORY.
+ * impact to the bit, same earlier crashes. Only who errs and the lanes are taken from names. Error:
+ * CP_NO_MEMORY.
  */
 CP_MUST_CHECK cp_status cp_crash_record_repeat(const cp_crash_row *known,
                                                const cp_impact_names *names, cp_crash_row *row,

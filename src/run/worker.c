@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/worker.h"
 
+#include "core/file.h"
 #include "core/progress.h"
 #include "crash/crash_simulation.h"
 #include "run/background.h"
@@ -18,20 +19,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The folder that a path names something in; the caller frees. NULL when memory is gone.
-static char *folder_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash != NULL ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
-}
-
 // Before SUMO reads what others wrote. SQLite's own temporary files go where the database is, the
 // only other place that is left.
 static cp_status confine(const cp_study_scenario *scenario, const char *db_path,
                          const char *result_path, cp_error *error)
 {
-    char *own = folder_of(scenario->sumocfg_path);
-    char *of_db = folder_of(db_path != NULL ? db_path : scenario->sumocfg_path);
+    char *own = cp_file_beside(scenario->sumocfg_path, ".");
+    char *of_db = cp_file_beside(db_path != NULL ? db_path : scenario->sumocfg_path, ".");
     const char *folders[] = {own, of_db, result_path};
     cp_status status = CP_OK;
     if (own == NULL || of_db == NULL || setenv("SQLITE_TMPDIR", of_db, 1) != 0)
@@ -198,14 +192,11 @@ static cp_status study_background(const cp_background_job *job, const cp_study *
     if (scenario == NULL)
         return cp_fail(error, CP_BAD_INPUT, "%s: has no scenario '%s'", job->path, job->scenario);
     // The first of the study's own runs, or the one with the seed that is asked for.
-    cp_status status = CP_OK;
-    for (size_t number = 0; status == CP_OK && number < study->background_seeds; number++) {
-        cp_background_plan_row row;
-        status =
-            cp_plan_background(study, (size_t)(scenario - study->scenarios), number, &row, error);
-        if (status == CP_OK && (number == 0 || (job->seed != NULL && *job->seed == row.seed)))
-            own = row;
-    }
+    size_t index = (size_t)(scenario - study->scenarios), number = 0;
+    for (size_t k = 1; job->seed != NULL && k < study->background_seeds; k++)
+        if (cp_plan_seed(study, index, cp_study_baseline(study), k) == *job->seed)
+            number = k;
+    cp_status status = cp_plan_background(study, index, number, &own, error);
     if (status != CP_OK)
         return status;
     if (job->expected_hash != NULL && strcmp(job->expected_hash, own.configuration_hash) != 0)

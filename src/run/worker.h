@@ -19,8 +19,8 @@
 #define CP_WORKER_REPORT_FD 3
 
 /* Before SUMO is started, every one of the following confines the process (run/confinement.h) to
- * the folders of the scenario's .sumocfg and of the database; unless free_outputs: whoever started
- * it lets SUMO write and connect where the scenario says. */
+ * the folders of the scenario's .sumocfg and of the database and to the result file; unless
+ * free_outputs: whoever started it lets SUMO write and connect where the scenario says. */
 
 /* Claim, run and commit one replication of the study. *elsewhere tells that it was not to be had;
  * that is no error. The database is closed while the replication runs. */

@@ -48,7 +48,8 @@ typedef struct cp_participant_rows {
 
 void cp_participant_rows_destroy(cp_participant_rows *rows);
 
-/* Add the rows of another crash's, with roles changed where swapped. Error: CP_NO_MEMORY. */
+/* Fill rows, zeroed before, with those of another crash, roles changed where swapped. Error:
+ * CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_participant_rows_copy(const cp_participant_rows *from, bool swapped,
                                                  cp_participant_rows *rows, cp_error *error);
 

@@ -2,6 +2,7 @@
 #include "study/scenario_outputs.h"
 
 #include "core/file.h"
+#include "core/output_files.h"
 #include "study/scenario_walk.h"
 
 #include <limits.h>
@@ -39,25 +40,10 @@ static bool is_connection(const char *name)
 // The folder that a path names a file in, links followed; false: there is none yet.
 static bool real_folder(const char *path, char folder[PATH_MAX])
 {
-    char *copy = strdup(path);
-    if (copy == NULL)
-        return false;
-    char *slash = strrchr(copy, '/');
-    if (slash != NULL)
-        slash[slash == copy] = '\0';
-    bool found = realpath(slash != NULL ? copy : ".", folder) != NULL;
-    free(copy);
+    char *place = cp_file_beside(path, ".");
+    bool found = place != NULL && realpath(place, folder) != NULL;
+    free(place);
     return found;
-}
-
-static bool has_way_up(const char *path)
-{
-    for (const char *part = path; part != NULL; part = strchr(part, '/')) {
-        part += *part == '/';
-        if (strncmp(part, "..", 2) == 0 && (part[2] == '/' || part[2] == '\0'))
-            return true;
-    }
-    return false;
 }
 
 // Why a file must not be written, NULL if it may. A folder that is not there leads nowhere, but by
@@ -67,7 +53,7 @@ static const char *judge_path(const char *path, const char *own_folder)
     char folder[PATH_MAX];
     struct stat status;
     if (!real_folder(path, folder))
-        return has_way_up(path) ? LEAVES : NULL;
+        return cp_path_has_parent_step(path) ? LEAVES : NULL;
     size_t length = strlen(own_folder);
     bool is_below = strncmp(folder, own_folder, length) == 0 &&
                     (folder[length] == '\0' || folder[length] == '/' || length == 1);

@@ -18,6 +18,9 @@ static cp_status gather_types(const cp_study *study, json_t *types, cp_error *er
         if (json_object_set_new(types, OF_SUMO[k], json_true()) != 0)
             status = cp_fail_memory(error, "vehicle types");
     for (size_t k = 0; status == CP_OK && k < study->scenario_count; k++) {
+        // Those of a sweep read the same files.
+        if (k > 0 && cp_study_scenarios_start_alike(&study->scenarios[k - 1], &study->scenarios[k]))
+            continue;
         cp_scenario_inputs inputs = cp_study_scenario_inputs(&study->scenarios[k]);
         status = cp_scenario_types_add(&inputs, types, error);
     }

@@ -45,8 +45,7 @@ static void find_straight(cp_lane_map *map)
     }
 }
 
-// The lane right behind the end of another by one of its links.
-static uint32_t behind(const cp_lane_link *link)
+uint32_t cp_lane_link_next(const cp_lane_link *link)
 {
     return link->via != CP_LANE_NONE ? link->via : link->to;
 }
@@ -58,8 +57,8 @@ static void find_from(cp_lane_map *map)
     uint32_t *next = map->froms;
     for (size_t k = 0; k < map->count; k++)
         for (size_t i = 0; i < map->lane[k].link_count; i++)
-            if (behind(&map->lane[k].link[i]) < map->count)
-                map->lane[behind(&map->lane[k].link[i])].from_count++;
+            if (cp_lane_link_next(&map->lane[k].link[i]) < map->count)
+                map->lane[cp_lane_link_next(&map->lane[k].link[i])].from_count++;
     for (size_t k = 0; k < map->count; k++) {
         map->lane[k].from = next;
         next += map->lane[k].from_count;
@@ -67,7 +66,7 @@ static void find_from(cp_lane_map *map)
     }
     for (size_t k = 0; k < map->count; k++)
         for (size_t i = 0; i < map->lane[k].link_count; i++) {
-            uint32_t to = behind(&map->lane[k].link[i]);
+            uint32_t to = cp_lane_link_next(&map->lane[k].link[i]);
             if (to >= map->count)
                 continue;
             cp_lane *lane = &map->lane[to];
@@ -147,10 +146,4 @@ const cp_lane_link *cp_lane_map_link(const cp_lane_map *map, uint32_t number, ui
         is_on_edge = true;
     }
     return taken;
-}
-
-uint32_t cp_lane_map_next(const cp_lane_map *map, uint32_t number, uint32_t towards)
-{
-    const cp_lane_link *taken = cp_lane_map_link(map, number, towards);
-    return taken != NULL ? behind(taken) : CP_LANE_NONE;
 }

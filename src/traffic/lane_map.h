@@ -58,8 +58,8 @@ const cp_lane *cp_lane_map_lane(const cp_lane_map *map, uint32_t lane);
  * matter where to), else to its edge, else straight on; NULL at the end of the road. */
 const cp_lane_link *cp_lane_map_link(const cp_lane_map *map, uint32_t lane, uint32_t towards);
 
-/* The lane that follows by that link; CP_LANE_NONE at the end of the road. */
-uint32_t cp_lane_map_next(const cp_lane_map *map, uint32_t lane, uint32_t towards);
+/* The lane right behind the end of another by one of its links. */
+uint32_t cp_lane_link_next(const cp_lane_link *link);
 
 #ifdef __cplusplus
 }

@@ -141,7 +141,7 @@ static double full_overlap_g(const jump_case *one)
     return olc_g[0];
 }
 
-static void run_case(void *context, size_t k)
+static cp_status run_case(void *context, size_t k)
 {
     jump_run *run = context;
     jump_case *one = &run->one[k];
@@ -158,6 +158,7 @@ static void run_case(void *context, size_t k)
     }
     if (!one->failed && one->overlap_1 < TOUCH_1)
         one->full_olc_g = full_overlap_g(one);
+    return CP_OK;
 }
 
 // ---- drawn crashes -----------------------------------------------------------------------------

@@ -9,6 +9,8 @@
 
 #include <cmocka.h>
 
+#include "builders/assert_near.h"
+
 /* What controls tell of a crash afterwards: driver errors at work before it, and what functions
  * did. */
 
@@ -17,12 +19,6 @@ static void step(cp_traffic *traffic, cp_controls *controls)
     cp_error error = {0};
     assert_int_equal(cp_traffic_step(traffic, &error), CP_OK);
     assert_int_equal(cp_controls_step(controls, &error), CP_OK);
-}
-
-static void assert_near(double found, double expected, double tolerance)
-{
-    if (!(fabs(found - expected) <= tolerance))
-        fail_msg("found %.9g, expected %.9g within %g", found, expected, tolerance);
 }
 
 // ---- driver errors -------------------------------------------------------------------------

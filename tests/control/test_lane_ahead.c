@@ -53,8 +53,8 @@ static void the_way_follows_the_route_or_goes_straight_on(void **unused)
     cp_lane_ahead ahead;
     const uint32_t north[] = {3};
     cp_vehicle_motion car = at(90, 0, 0, 0);
-    assert_int_equal(cp_lane_map_next(map, 0, CP_LANE_NONE), 2);
-    assert_int_equal(cp_lane_map_next(map, 0, 3), 1);
+    assert_int_equal(cp_lane_link_next(cp_lane_map_link(map, 0, CP_LANE_NONE)), 2);
+    assert_int_equal(cp_lane_link_next(cp_lane_map_link(map, 0, 3)), 1);
 
     // Straight on: as far as the road goes, and beyond.
     assert_true(cp_lane_ahead_lay(map, &car, 0.0, NULL, 0, false, 200, &ahead));

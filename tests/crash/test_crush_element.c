@@ -88,9 +88,9 @@ static void a_law_follows_all_its_points_then_stop_and_plateau(void **state)
     const double force_n[] = {0.5e5, 0.7e5, 0.8e5, 1.6e5, 2.5e5, 3e5, 3e5, 3e5};
     for (size_t k = 0; k < sizeof at_m / sizeof *at_m; k++)
         assert_near(cp_crush_loading_force(&DEEP, at_m[k]), force_n[k], 1e-6);
-    assert_near(cp_crush_loading_slope(&DEEP, 0.03), -0.6e5 / 0.04, 1e-6);
-    assert_near(cp_crush_loading_slope(&DEEP, 0.215), 1e7, 1e-6);
-    assert_near(cp_crush_loading_slope(&DEEP, 0.5), 0.0, 0.0);
+    assert_near(cp_crush_loading_at(&DEEP, 0.03).slope_n_m, -0.6e5 / 0.04, 1e-6);
+    assert_near(cp_crush_loading_at(&DEEP, 0.215).slope_n_m, 1e7, 1e-6);
+    assert_near(cp_crush_loading_at(&DEEP, 0.5).slope_n_m, 0.0, 0.0);
     assert_near(cp_crush_collapse_force(&DEEP), 2e5, 0.0);
 
     // The work is the area, over all pieces.

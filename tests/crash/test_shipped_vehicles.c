@@ -70,7 +70,7 @@ static void every_vehicle_can_be_crashed(void **state)
 }
 
 // Two like cars whose fronts collapse against each other share the way among their blocks: with an
-// eighth of the step the same OLC within 2 % in the mean.
+// eighth of the step the same OLC within 3 % in the mean.
 static void compare_steps(const char *path, const cp_vehicle_model *model)
 {
     if (strstr(path, ".base.yaml") != NULL || strstr(path, ".start.yaml") != NULL)

@@ -27,6 +27,7 @@ static void reports_alone_are_a_record(void **unused)
     const cp_fcd_track *a = &record.track[0][0], *b = &record.track[0][1];
     assert_true(a->count == 2 && b->count == 2);
     assert_true(a->sample[1].front_m.y == 2.0 && a->sample[1].speed_m_s == 12.0);
+    assert_true(a->sample[1].lane == CP_FCD_NO_LANE);
     assert_true(fabs(a->sample[0].yaw_rad - acos(0.0)) < 1e-12);             // north
     assert_true(fabs(fabs(b->sample[0].yaw_rad) - 2.0 * acos(0.0)) < 1e-12); // west
     cp_fcd_record_destroy(&record);
@@ -63,9 +64,10 @@ static void what_is_missing_is_told(void **unused)
 static void reports_go_before_the_record(void **unused)
 {
     (void)unused;
-    static cp_fcd_sample samples[] = {{.time_s = 0.75, .front_m = {10, -1}, .speed_m_s = 8},
-                                      {.time_s = 1.0, .front_m = {90, 0}, .speed_m_s = 8},
-                                      {.time_s = 1.5, .front_m = {91, 0}, .speed_m_s = 8}};
+    static cp_fcd_sample samples[] = {
+        {.time_s = 0.75, .front_m = {10, -1}, .speed_m_s = 8},
+        {.time_s = 1.0, .front_m = {90, 0}, .speed_m_s = 8, .lane = 3},
+        {.time_s = 1.5, .front_m = {91, 0}, .speed_m_s = 8}};
     cp_collision_list list;
     cp_error error = {0};
     assert_int_equal(cp_sumo_collisions_read(write_file(REPORTS), &list, &error), CP_OK);
@@ -77,6 +79,7 @@ static void reports_go_before_the_record(void **unused)
     assert_int_equal(cp_sumo_places_add(&list, &record, &error), CP_OK);
     const cp_fcd_track *a = &record.track[0][0];
     assert_int_equal(a->count, 4);
+    assert_true(a->sample[1].lane == 3 && a->sample[2].lane == CP_FCD_NO_LANE);
     const double time_s[] = {0.75, 1.0, 1.25, 1.5}, x_m[] = {10, 10, 10, 91};
     for (size_t k = 0; k < 4; k++)
         assert_true(a->sample[k].time_s == time_s[k] && a->sample[k].front_m.x == x_m[k]);

@@ -1,13 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+// clang-format off
 /* Preloaded into a program: the k-th call of one kind goes wrong. Kinds: of SQLite's files open,
  * read, write, full, sync, truncate, lock, map, delete; of the system rename, fsync, spawn, pipe,
- * fork, temp. FAULT_KIND, FAULT_AT=k   which call; of the program FAULT_IN only FAULT_DO error
- * (default), error_on (this one and all after it), signal N (to the process itself), parent N (to
- * its parent), cut (SIGKILL to the process group: the power is gone). A write goes wrong after half
- * of it. FAULT_COUNT              file: a line "program kind calls" for every kind is added at the
- * end FAULT_DISK               folder: what of the databases is safe on the disk: the files as they
- * were at their last sync, for every program FAULT_CLOCK=k:s          from the k-th look at the
- * clock of the day on it is s seconds later */
+ * fork, temp.
+ *
+ * FAULT_KIND, FAULT_AT=k  which call; of the program FAULT_IN only
+ * FAULT_DO                error (default), error_on (this one and all after it), signal N (to the
+ *                         process itself), parent N (to its parent), cut (SIGKILL to the process
+ *                         group: the power is gone). A write goes wrong after half of it
+ * FAULT_COUNT             file: a line "program kind calls" for every kind is added at the end
+ * FAULT_DISK              folder: what of the databases is safe on the disk: the files as they were
+ *                         at their last sync, for every program
+ * FAULT_CLOCK=k:s         from the k-th look at the clock of the day on it is s seconds later */
+// clang-format on
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -31,8 +36,8 @@
     X(write)                                                                                       \
     X(full)                                                                                        \
     X(sync)                                                                                        \
-    X(truncate) X(lock) X(map) X(delete) X(rename) X(fsync) X(spawn) X(pipe) X(fork) X(temp)       \
-        X(clock)
+    X(truncate)                                                                                    \
+    X(lock) X(map) X(delete) X(rename) X(fsync) X(spawn) X(pipe) X(fork) X(temp) X(clock)
 enum kind {
 #define KIND_NAME(name) KIND_##name,
     KINDS(KIND_NAME)

@@ -23,6 +23,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "builders"))
 import crossing_study
+import hostile
 
 parser = argparse.ArgumentParser()
 parser.add_argument("--crashpulse", required=True)
@@ -59,7 +60,6 @@ COMMANDS = {
               "crashpulse"),
 }
 WRITING = ("run", "run, its workers", "run, counterfactual", "merge", "assess", "compare")
-LIST = "id,vehicle_a,vehicle_b,speed_a_km_h,speed_b_km_h,offset_mm,angle_deg\none,van,suv,50,40,0,0\n"
 TIMES = re.compile(rb"[0-9.]+ s\b|[0-9:]+ left")
 Found = collections.namedtuple("Found", "code out err")
 
@@ -69,7 +69,7 @@ Found = collections.namedtuple("Found", "code out err")
 def prepare(folder):
     study = crossing_study.write(folder, a.network, replications=1, duration_s=20)
     (folder / "pairs.yaml").write_text(study.read_text().replace("paired_seeds", "counterfactual"))
-    (folder / "list.csv").write_text(LIST)
+    (folder / "list.csv").write_text(hostile.LIST)
     shutil.copy(a.db, folder / "small.db")
     clean(folder, RUN)
     (folder / "study.db").rename(folder / "part.db")
@@ -168,7 +168,7 @@ class Case:
         self.prepare, self.limit_s = prepare, limit_s
 
     def judge(self, source, right):
-        """Nothing, or what is wrong."""
+        """The exit code, and what is wrong, if anything."""
         with tempfile.TemporaryDirectory() as text:
             folder = pathlib.Path(text)
             shutil.copytree(source, folder, dirs_exist_ok=True)
@@ -177,15 +177,15 @@ class Case:
             found = faulty(folder, self.words + self.more_words, environment, self.limit_s)
             left = left_workers(folder)
             if left:
-                return f"processes are left: {left}"
+                return found.code, f"processes are left: {left}"
             wrong = self.judge_end(folder, found, right)
             if wrong:
-                return wrong
+                return found.code, wrong
             if after:
                 after()
             if found.code != 0 or after:
-                return self.judge_again(folder, right)
-            return None
+                return found.code, self.judge_again(folder, right)
+            return 0, None
 
     def judge_end(self, folder, found, right):
         err = found.err.decode(errors="replace")
@@ -354,7 +354,7 @@ def clock_cases(name, counts):
 
 KINDS = {"errors": error_cases, "signals": signal_cases, "power": power_cases, "sumo": sumo_cases,
          "clock": clock_cases}
-tried, wrong = collections.Counter(), 0
+tried, acted, wrong = collections.Counter(), collections.Counter(), 0
 with tempfile.TemporaryDirectory() as text:
     source = pathlib.Path(text) / "source"
     source.mkdir()
@@ -370,8 +370,9 @@ with tempfile.TemporaryDirectory() as text:
         cases = some(cases, name) if a.cases else cases
         faults = collections.defaultdict(list)
         with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
-            for (what, case), fault in zip(cases, pool.map(lambda c: c[1].judge(source, right), cases)):
+            for (what, case), (code, fault) in zip(cases, pool.map(lambda c: c[1].judge(source, right), cases)):
                 tried[what] += 1
+                acted[what] += code != 0
                 if fault:
                     faults[re.sub("[0-9]{5,}|/tmp/[^/' ]*", "N", fault)].append(case.environment)
         print(f"{name}: {len(cases)} faults", flush=True)
@@ -380,4 +381,5 @@ with tempfile.TemporaryDirectory() as text:
             print(f"  {len(where)} times, first {where[0]}: {fault}", flush=True)
 print(", ".join(f"{number} {what}" for what, number in sorted(tried.items())))
 print(f"{sum(tried.values())} faults, {wrong} times something was wrong")
-sys.exit(1 if wrong or not tried else 0)
+# Some faults are withstood, not all of them.
+sys.exit(1 if wrong or not sum(acted.values()) else 0)

@@ -9,8 +9,8 @@
 
 // ---- simulating ----------------------------------------------------------------------------
 
-static cp_status add_contact(const cp_found_contact *found, cp_background_rows *rows,
-                             cp_error *error)
+static cp_status add_contact(const cp_traffic *traffic, const cp_found_contact *found,
+                             cp_background_rows *rows, cp_error *error)
 {
     const cp_impact *impact = &found->impact;
     cp_background_contact_row *row = cp_background_rows_add_contact(rows);
@@ -32,7 +32,7 @@ static cp_status add_contact(const cp_found_contact *found, cp_background_rows *
         row->angle_rad = description.angle_rad;
     }
     for (int role = 0; role < 2; role++) {
-        row->vehicle[role] = strdup(sumo_bridge_vehicle_id(impact->vehicle[role]));
+        row->vehicle[role] = strdup(cp_traffic_vehicle_id(traffic, impact->vehicle[role]));
         if (row->vehicle[role] == NULL)
             return cp_fail_memory(error, "background");
     }
@@ -46,13 +46,13 @@ static cp_status fill_rows(const cp_simulation *simulation, cp_background_rows *
     rows->vehicle_km = counted.vehicle_km;
     rows->vehicle_h = counted.vehicle_h;
     rows->departed = counted.departed;
-    rows->sumo_version = strdup(sumo_bridge_version());
-    rows->sumo_command_line = strdup(sumo_bridge_command_line());
+    rows->sumo_version = strdup(cp_traffic_version(simulation->traffic));
+    rows->sumo_command_line = strdup(cp_traffic_command_line(simulation->traffic));
     if (rows->sumo_version == NULL || rows->sumo_command_line == NULL)
         return cp_fail_memory(error, "background");
     cp_status status = CP_OK;
     for (size_t k = 0; status == CP_OK && k < simulation->found_count; k++)
-        status = add_contact(&simulation->found[k], rows, error);
+        status = add_contact(simulation->traffic, &simulation->found[k], rows, error);
     return status;
 }
 

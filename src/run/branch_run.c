@@ -30,17 +30,23 @@ typedef struct branch_run {
     size_t sample_count;
 } branch_run;
 
-static bool is_of_pair(const cp_branch_request *request, uint32_t vehicle)
+static const char *id_of(const branch_run *run, uint32_t vehicle)
 {
-    const char *id = sumo_bridge_vehicle_id(vehicle);
-    return strcmp(id, request->ids[0]) == 0 || strcmp(id, request->ids[1]) == 0;
+    return cp_traffic_vehicle_id(run->world->simulation->traffic, vehicle);
+}
+
+static bool is_of_pair(const branch_run *run, uint32_t vehicle)
+{
+    const char *id = id_of(run, vehicle);
+    return strcmp(id, run->request->ids[0]) == 0 || strcmp(id, run->request->ids[1]) == 0;
 }
 
 // Whether one of the two had this crash in the baseline too, before theirs.
-static bool is_earlier_crash(const cp_branch_request *request, const cp_found_contact *found)
+static bool is_earlier_crash(const branch_run *run, const cp_found_contact *found)
 {
-    const char *ids[2] = {sumo_bridge_vehicle_id(found->impact.vehicle[0]),
-                          sumo_bridge_vehicle_id(found->impact.vehicle[1])};
+    const char *ids[2] = {id_of(run, found->impact.vehicle[0]),
+                          id_of(run, found->impact.vehicle[1])};
+    const cp_branch_request *request = run->request;
     for (size_t k = 0; k < request->earlier_count; k++) {
         const cp_earlier_crash *earlier = &request->earlier[k];
         const char *pair[2] = {request->ids[earlier->role], earlier->opponent};
@@ -50,10 +56,9 @@ static bool is_earlier_crash(const cp_branch_request *request, const cp_found_co
     return false;
 }
 
-static bool involves_pair(const cp_branch_request *request, const cp_found_contact *found)
+static bool involves_pair(const branch_run *run, const cp_found_contact *found)
 {
-    return is_of_pair(request, found->impact.vehicle[0]) ||
-           is_of_pair(request, found->impact.vehicle[1]);
+    return is_of_pair(run, found->impact.vehicle[0]) || is_of_pair(run, found->impact.vehicle[1]);
 }
 
 // Look at the contacts of the step for the first crash of one of the two that it is about.
@@ -62,8 +67,8 @@ static void look_for_crash(branch_run *run)
     const cp_simulation *simulation = run->world->simulation;
     for (; run->seen < simulation->found_count; run->seen++) {
         const cp_found_contact *found = &simulation->found[run->seen];
-        if (run->first_index == 0 && cp_found_is_crash(found) &&
-            involves_pair(run->request, found) && !is_earlier_crash(run->request, found))
+        if (run->first_index == 0 && cp_found_is_crash(found) && involves_pair(run, found) &&
+            !is_earlier_crash(run, found))
             run->first_index = run->seen + 1;
     }
 }
@@ -78,7 +83,7 @@ static void sample(branch_run *run)
     const cp_vehicle_motion *all = cp_traffic_motions(traffic, &count);
     for (size_t k = 0; k < count; k++)
         for (int role = 0; role < 2; role++)
-            if (strcmp(sumo_bridge_vehicle_id(all[k].after.vehicle), run->request->ids[role]) == 0)
+            if (strcmp(id_of(run, all[k].after.vehicle), run->request->ids[role]) == 0)
                 motions[role] = &all[k];
     double ttc_s = NAN;
     if (motions[0] != NULL && motions[1] != NULL) {
@@ -139,12 +144,12 @@ static bool send_answer(const branch_run *run, int to)
         return false;
     for (size_t k = run->begun_at; k < simulation->found_count; k++) {
         const cp_found_contact *found = &simulation->found[k];
-        if (cp_found_is_crash(found) && !involves_pair(run->request, found) &&
+        if (cp_found_is_crash(found) && !involves_pair(run, found) &&
             found->impact.time_s <= horizon_s)
             others[other_count++] = found;
     }
-    bool sent = cp_branch_answer_send(to, first, run->world->samples, run->sample_count, others,
-                                      other_count);
+    bool sent = cp_branch_answer_send(to, simulation->traffic, first, run->world->samples,
+                                      run->sample_count, others, other_count);
     free(others);
     return sent;
 }

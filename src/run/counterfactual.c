@@ -168,9 +168,10 @@ static bool is_inserted_late(const cp_counterfactual *self, const cp_found_conta
     return false;
 }
 
-static cp_status take_id(uint32_t vehicle, char id[CP_BRANCH_ID_SIZE], cp_error *error)
+static cp_status take_id(const cp_counterfactual *self, uint32_t vehicle,
+                         char id[CP_BRANCH_ID_SIZE], cp_error *error)
 {
-    const char *text = sumo_bridge_vehicle_id(vehicle);
+    const char *text = cp_traffic_vehicle_id(self->world.simulation->traffic, vehicle);
     if (strlen(text) >= CP_BRANCH_ID_SIZE)
         return cp_fail(error, CP_BAD_INPUT, "vehicle id '%s' is longer than %d characters", text,
                        CP_BRANCH_ID_SIZE - 1);
@@ -195,10 +196,11 @@ static cp_status take_earlier_crashes(const cp_counterfactual *self, size_t inde
             if (request->earlier_count == CP_BRANCH_EARLIER_MAX)
                 return cp_fail(error, CP_RUN_FAILED,
                                "'%s' had more than %d crashes since the checkpoint",
-                               sumo_bridge_vehicle_id(own), CP_BRANCH_EARLIER_MAX);
+                               cp_traffic_vehicle_id(self->world.simulation->traffic, own),
+                               CP_BRANCH_EARLIER_MAX);
             cp_earlier_crash *earlier = &request->earlier[request->earlier_count++];
             earlier->role = role;
-            status = take_id(pair[0] == own ? pair[1] : pair[0], earlier->opponent, error);
+            status = take_id(self, pair[0] == own ? pair[1] : pair[0], earlier->opponent, error);
         }
     return status;
 }
@@ -226,7 +228,7 @@ static cp_status branch(cp_counterfactual *self, size_t index, cp_error *error)
     cp_branch_request request = {.contact_s = contact_s};
     cp_status status = CP_OK;
     for (int role = 0; status == CP_OK && role < 2; role++)
-        status = take_id(found->impact.vehicle[role], request.ids[role], error);
+        status = take_id(self, found->impact.vehicle[role], request.ids[role], error);
     if (status == CP_OK)
         status = take_earlier_crashes(self, index, pair->checkpoint_s, &request, error);
     size_t branches = 1 + self->treatment_count;
@@ -309,8 +311,8 @@ cp_status cp_counterfactual_conclude(cp_counterfactual *self, const cp_fleet *fl
                         .number = number,
                         .found = record->found,
                         .crash = &crashes[number],
-                        .ids = {sumo_bridge_vehicle_id(impact->vehicle[0]),
-                                sumo_bridge_vehicle_id(impact->vehicle[1])},
+                        .ids = {cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[0]),
+                                cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[1])},
                         .status = record->status,
                         .lead_s = record->lead_s,
                         .checkpoint_s = record->checkpoint_s,

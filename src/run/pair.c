@@ -197,8 +197,8 @@ static size_t count_new(const cp_pair *pair, const cp_branch_answer *answer)
         bool is_new = other.time_s <= end_s;
         for (size_t f = 0; is_new && f < simulation->found_count; f++) {
             const cp_impact *impact = &simulation->found[f].impact;
-            const char *ids[2] = {sumo_bridge_vehicle_id(impact->vehicle[0]),
-                                  sumo_bridge_vehicle_id(impact->vehicle[1])};
+            const char *ids[2] = {cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[0]),
+                                  cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[1])};
             is_new = !(cp_found_is_crash(&simulation->found[f]) &&
                        cp_branch_is_same_pair(ids, other.ids));
         }
@@ -235,8 +235,8 @@ static size_t count_vanished(const cp_pair *pair, const cp_branch_answer *answer
     size_t count = 0;
     for (size_t f = 0; f < simulation->found_count; f++) {
         const cp_impact *impact = &simulation->found[f].impact;
-        const char *ids[2] = {sumo_bridge_vehicle_id(impact->vehicle[0]),
-                              sumo_bridge_vehicle_id(impact->vehicle[1])};
+        const char *ids[2] = {cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[0]),
+                              cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[1])};
         count += cp_found_is_crash(&simulation->found[f]) && impact->time_s > pair->checkpoint_s &&
                  impact->time_s <= horizon_s && !involves(pair->ids, ids) &&
                  !happens_again(answer, ids);

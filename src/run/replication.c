@@ -88,15 +88,19 @@ static cp_status name_crash(const replication_run *run, const cp_found_contact *
     for (int role = 0; role < 2; role++) {
         named->names.at_fault[role] = found->at_fault[role];
         named->names.had_crashed[role] = found->had_crashed[role];
-        named->id[role] = strdup(sumo_bridge_vehicle_id(impact->vehicle[role]));
-        named->type[role] = strdup(sumo_bridge_type_id(impact->state[role].type));
-        named->lane[role] = strdup(sumo_bridge_lane_id(impact->state[role].lane));
+        named->id[role] =
+            strdup(cp_traffic_vehicle_id(run->simulation.traffic, impact->vehicle[role]));
+        named->type[role] =
+            strdup(cp_traffic_type_id(run->simulation.traffic, impact->state[role].type));
+        named->lane[role] =
+            strdup(cp_traffic_lane_id(run->simulation.traffic, impact->state[role].lane));
         if (named->id[role] == NULL || named->type[role] == NULL || named->lane[role] == NULL)
             return cp_fail_memory(error, "crash");
         named->names.lane[role] = named->lane[role];
         named->names.sumo_id[role] = named->id[role];
         named->names.sumo_type[role] = named->type[role];
-        cp_status status = sumo_bridge_type(named->type[role], &named->names.type[role], error);
+        cp_status status = cp_traffic_type(run->simulation.traffic, named->type[role],
+                                           &named->names.type[role], error);
         if (status != CP_OK)
             return status;
     }
@@ -169,7 +173,8 @@ static cp_status record_contact(replication_run *run, const cp_found_contact *fo
     row->contact_m = impact->contact_m;
     row->verdict = found->found_as;
     for (int role = 0; role < 2; role++) {
-        row->vehicle[role] = strdup(sumo_bridge_vehicle_id(impact->vehicle[role]));
+        row->vehicle[role] =
+            strdup(cp_traffic_vehicle_id(run->simulation.traffic, impact->vehicle[role]));
         if (row->vehicle[role] == NULL)
             return cp_fail_memory(error, "contact");
     }
@@ -211,8 +216,8 @@ static cp_status record_cross_check(replication_run *run, const cp_replication_r
         if (row == NULL)
             return cp_fail_memory(error, "collision of SUMO");
         row->time_s = pair->time_s;
-        row->collider = strdup(sumo_bridge_vehicle_id(pair->collider));
-        row->victim = strdup(sumo_bridge_vehicle_id(pair->victim));
+        row->collider = strdup(cp_traffic_vehicle_id(run->simulation.traffic, pair->collider));
+        row->victim = strdup(cp_traffic_vehicle_id(run->simulation.traffic, pair->victim));
         row->type = strdup(pair->type);
         row->found_as = pair->found_as;
         row->gap_m = isfinite(pair->gap_m) ? pair->gap_m : NAN;
@@ -236,8 +241,8 @@ static cp_status record_cross_check(replication_run *run, const cp_replication_r
 
 static cp_status record_versions(replication_run *run, cp_error *error)
 {
-    run->results->sumo_version = strdup(sumo_bridge_version());
-    run->results->sumo_command_line = strdup(sumo_bridge_command_line());
+    run->results->sumo_version = strdup(cp_traffic_version(run->simulation.traffic));
+    run->results->sumo_command_line = strdup(cp_traffic_command_line(run->simulation.traffic));
     if (run->results->sumo_version == NULL || run->results->sumo_command_line == NULL)
         return cp_fail_memory(error, "SUMO's command line");
     return cp_controls_counters_json(run->simulation.controls, &run->results->counters, error);

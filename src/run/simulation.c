@@ -258,7 +258,7 @@ static cp_status take_sumo_collisions(cp_simulation *simulation, cp_error *error
 {
     const cp_sumo_collision *collisions = NULL;
     size_t count = 0;
-    cp_status status = sumo_bridge_collisions(&collisions, &count, error);
+    cp_status status = cp_traffic_collisions(simulation->traffic, &collisions, &count, error);
     for (size_t k = 0; status == CP_OK && k < count; k++)
         status = cp_cross_check_add_report(&simulation->check, collisions[k].collider,
                                            collisions[k].victim, collisions[k].type,

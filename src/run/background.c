@@ -59,23 +59,19 @@ static cp_status fill_rows(const cp_simulation *simulation, cp_background_rows *
 cp_status cp_background_run(const cp_background_options *options, cp_background_rows *rows,
                             cp_cross_check *check, cp_error *error)
 {
-    // A study of one scenario without errors and one variant without functions, whose name, which
-    // files that SUMO writes begin with, no variant can have.
-    cp_study_scenario scenario = *options->scenario;
-    scenario.driver_errors = NULL;
-    scenario.driver_error_count = 0;
-    cp_study_variant variant = {.name = (char *)"@background"};
-    cp_study study = {.seed = options->seed,
-                      .step_length_s = options->step_length_s,
-                      .warmup_s = options->warmup_s,
-                      .stay_s = options->stay_s};
+    // Neither driver errors nor functions.
+    cp_simulation_settings settings = {.sumo = options->sumo,
+                                       .study_seed = options->seed,
+                                       .seed = options->seed,
+                                       .step_length_s = options->step_length_s,
+                                       .warmup_s = options->warmup_s,
+                                       .stay_s = options->stay_s};
     cp_simulation simulation = {0};
     rows->scenario = options->network;
     rows->seed = options->seed;
     rows->step_length_s = options->step_length_s;
     long long steps = llround(options->duration_s / options->step_length_s), done = 0;
-    cp_status status =
-        cp_simulation_begin(&study, &scenario, &variant, options->seed, &simulation, error);
+    cp_status status = cp_simulation_begin(&settings, &simulation, error);
     while (status == CP_OK && done < steps &&
            (done == 0 || !cp_traffic_finished(simulation.traffic))) {
         status = cp_simulation_step(&simulation, error);

@@ -9,11 +9,6 @@
 
 #define TTC_HORIZON_S 10.0
 
-const cp_study_variant *cp_branch_treatment(const cp_study *study, size_t number)
-{
-    return &study->variants[number < cp_study_baseline(study) ? number : number + 1];
-}
-
 bool cp_branch_is_same_pair(const char *const one[2], const char *const other[2])
 {
     return (strcmp(one[0], other[0]) == 0 && strcmp(one[1], other[1]) == 0) ||
@@ -115,8 +110,8 @@ static cp_status run_steps(branch_run *run, bool is_null, cp_error *error)
 {
     cp_simulation *simulation = run->world->simulation;
     double contact_s = run->request->contact_s;
-    double window_s = run->world->study->counterfactual.time_series_s;
-    double end_s = contact_s + (is_null ? 1.0 : run->world->study->counterfactual.horizon_s);
+    double window_s = run->world->treatments->timing.time_series_s;
+    double end_s = contact_s + (is_null ? 1.0 : run->world->treatments->timing.horizon_s);
     cp_status status = CP_OK;
     while (status == CP_OK && cp_traffic_time_s(simulation->traffic) < end_s &&
            !(is_null && run->first_index > 0)) {
@@ -133,7 +128,7 @@ static cp_status run_steps(branch_run *run, bool is_null, cp_error *error)
 static bool send_answer(const branch_run *run, int to)
 {
     const cp_simulation *simulation = run->world->simulation;
-    double horizon_s = run->request->contact_s + run->world->study->counterfactual.horizon_s;
+    double horizon_s = run->request->contact_s + run->world->treatments->timing.horizon_s;
     const cp_found_contact *first =
         run->first_index > 0 ? &simulation->found[run->first_index - 1] : NULL;
     if (first != NULL && first->impact.time_s > horizon_s)
@@ -169,11 +164,11 @@ int cp_branch_run(void *context, size_t number, const void *request, size_t size
 
     // Number 0 changes nothing.
     if (number > 0) {
-        const cp_study_variant *variant = cp_branch_treatment(world->study, number - 1);
+        const cp_treatment *treatment = &world->treatments->treatment[number - 1];
         const char *ids[2] = {run.request->ids[0], run.request->ids[1]};
-        if (cp_controls_add_treatment(simulation->controls, variant->functions,
-                                      variant->function_count, world->study->seed, world->seed, ids,
-                                      &error) != CP_OK)
+        if (cp_controls_add_treatment(simulation->controls, treatment->functions,
+                                      treatment->function_count, world->treatments->study_seed,
+                                      world->treatments->seed, ids, &error) != CP_OK)
             return 1;
     }
     if (run_steps(&run, number == 0, &error) != CP_OK)

@@ -105,16 +105,17 @@ bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *ans
         return false;
     *answer = (cp_branch_answer){.has_crash = head.has_crash,
                                  .found = head.found,
-                                 .type = {head.type[0], head.type[1]},
                                  .sample = (const cp_sample_row *)(const void *)at,
                                  .sample_count = head.sample_count,
                                  .other_count = head.other_count};
     at += head.sample_count * sizeof(cp_sample_row);
     for (int role = 0; head.has_crash && role < 2; role++) {
-        answer->ids[role] = take_text(&at, end);
-        answer->types[role] = take_text(&at, end);
-        answer->lanes[role] = take_text(&at, end);
-        if (answer->ids[role] == NULL || answer->types[role] == NULL || answer->lanes[role] == NULL)
+        cp_branch_car *car = &answer->car[role];
+        car->id = take_text(&at, end);
+        car->type_id = take_text(&at, end);
+        car->lane = take_text(&at, end);
+        car->type = head.type[role];
+        if (car->id == NULL || car->type_id == NULL || car->lane == NULL)
             return false;
     }
     answer->others = at;
@@ -127,6 +128,18 @@ bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *ans
                 return false;
     }
     return at == end;
+}
+
+void cp_branch_answer_swap_roles(cp_branch_answer *answer)
+{
+    const cp_found_car found = answer->found.car[0];
+    const cp_branch_car car = answer->car[0];
+    cp_impact_swap_roles(&answer->found.impact);
+    answer->found.car[0] = answer->found.car[1];
+    answer->found.car[1] = found;
+    answer->car[0] = answer->car[1];
+    answer->car[1] = car;
+    answer->is_swapped = !answer->is_swapped;
 }
 
 cp_other_crash cp_branch_answer_other(const cp_branch_answer *answer, const char **at)

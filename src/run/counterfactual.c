@@ -148,8 +148,8 @@ static cp_status remember_inserted(cp_counterfactual *self, cp_error *error)
 static double error_onset_s(const cp_counterfactual *self, const cp_found_contact *found, int role)
 {
     const vehicle_past *past = &self->past[found->impact.vehicle[role]];
-    double towards_s = found->error_since_s[role];
-    if (!found->errs_alone[role])
+    double towards_s = found->car[role].error_since_s;
+    if (!found->car[role].errs_alone)
         return towards_s;
     double onset_s = past->was_at_fault ? past->fault_since_s -
                                               self->world.treatments->timing.checkpoint_interval_s

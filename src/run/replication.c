@@ -88,8 +88,8 @@ static cp_status name_crash(const replication_run *run, const cp_found_contact *
     const cp_impact *impact = &found->impact;
     *named = (named_crash){.found = found, .names.sumocfg_path = run->simulation.sumocfg_path};
     for (int role = 0; role < 2; role++) {
-        named->names.at_fault[role] = found->at_fault[role];
-        named->names.had_crashed[role] = found->had_crashed[role];
+        named->names.at_fault[role] = found->car[role].at_fault;
+        named->names.had_crashed[role] = found->car[role].had_crashed;
         named->id[role] =
             strdup(cp_traffic_vehicle_id(run->simulation.traffic, impact->vehicle[role]));
         named->type[role] =
@@ -173,7 +173,7 @@ static cp_status record_contact(replication_run *run, const cp_found_contact *fo
         return cp_fail_memory(error, "contact");
     row->time_s = impact->time_s;
     row->contact_m = impact->contact_m;
-    row->verdict = found->found_as;
+    row->verdict = cp_found_as_text(found->found_as);
     for (int role = 0; role < 2; role++) {
         row->vehicle[role] =
             strdup(cp_traffic_vehicle_id(run->simulation.traffic, impact->vehicle[role]));
@@ -221,12 +221,12 @@ static cp_status record_cross_check(replication_run *run, const cp_replication_r
         row->collider = strdup(cp_traffic_vehicle_id(run->simulation.traffic, pair->collider));
         row->victim = strdup(cp_traffic_vehicle_id(run->simulation.traffic, pair->victim));
         row->type = strdup(pair->type);
-        row->found_as = pair->found_as;
+        row->found_as = cp_found_as_text(pair->found_as);
         row->gap_m = isfinite(pair->gap_m) ? pair->gap_m : NAN;
         if (row->collider == NULL || row->victim == NULL || row->type == NULL)
             return cp_fail_memory(error, "collision of SUMO");
         bool is_apart = isfinite(pair->gap_m) && pair->gap_m > 0.0;
-        if (strcmp(pair->found_as, "no_contact") == 0 && !is_apart && unexplained++ == 0)
+        if (pair->found_as == CP_FOUND_NO_CONTACT && !is_apart && unexplained++ == 0)
             first = run->results->sumo_collision_count - 1;
     }
     // All are stored with what they were found as; what nothing explains is said.

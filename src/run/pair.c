@@ -156,7 +156,7 @@ static cp_status conclude_null(const cp_pair *pair, cp_counterfactual_rows *rows
     const cp_branch_end *end = &pair->ends[0];
     if (row->status == CP_NULL_REPRODUCED && !end->answered) {
         row->status = CP_NULL_BRANCH_FAILED;
-        snprintf(row->detail, CP_DETAIL_SIZE, "null treatment: %s", end->failure);
+        snprintf(row->detail, CP_DETAIL_SIZE, "null treatment: %.200s", end->failure);
     } else if (row->status == CP_NULL_REPRODUCED) {
         if (!cp_branch_answer_read(end->answer, end->answer_size, &answer))
             return cp_fail(error, CP_RUN_FAILED, "a branch's answer is damaged");

@@ -110,6 +110,53 @@ static void front_to_front(void **state)
     cp_result_rows_destroy(&rows);
 }
 
+// Speed as against a wall: the lighter car's is the higher, whichever role it has.
+static void validity_is_each_cars_own(void **state)
+{
+    (void)state;
+    cp_error error = {0};
+    for (int role_of_van = 0; role_of_van < 2; role_of_van++) {
+        small_fleet f;
+        cp_result_rows rows = {0};
+        fill_fleet(&f);
+        for (int k = 0; k < 2; k++) {
+            f.models[k].calibrated_speed_min_m_s = 25.0 / 3.6;
+            f.models[k].calibrated_speed_max_m_s = 56.0 / 3.6;
+            f.models[k].calibrated_offset_max_m = 1.05;
+            f.models[k].calibrated_angle_max_rad = 0.5;
+        }
+        f.models[0].mass_kg =
+            1400.0; // 108 km/h of closing: 68.2 km/h for the car, 39.8 for the van
+        cp_impact impact = head_on(0.0);
+        cp_impact_names names = names_of("van");
+        if (role_of_van == 0) {
+            names.sumo_type[0] = "van";
+            names.sumo_type[1] = "passenger";
+            const cp_sumo_type car = names.type[0];
+            names.type[0] = names.type[1];
+            names.type[1] = car;
+        }
+        cp_crash_row *row = cp_result_rows_add_crash(&rows);
+        assert_int_equal(
+            cp_crash_record_fill(&impact, &names, &f.fleet, CP_RECORD_ALL, row, &error), CP_OK);
+        assert_string_equal(row->vehicle[role_of_van].vehicle_model, "van");
+        assert_int_equal(row->vehicle[role_of_van].outside, 0);
+        assert_int_equal(row->vehicle[1 - role_of_van].outside, CP_OUTSIDE_SPEED);
+        cp_result_rows_destroy(&rows);
+
+        // A van that was never calibrated says nothing of the car.
+        f.models[1].calibrated_speed_max_m_s = 0.0;
+        f.models[1].calibrated_speed_min_m_s = 0.0;
+        rows = (cp_result_rows){0};
+        row = cp_result_rows_add_crash(&rows);
+        assert_int_equal(
+            cp_crash_record_fill(&impact, &names, &f.fleet, CP_RECORD_ALL, row, &error), CP_OK);
+        assert_true(row->vehicle[role_of_van].outside & CP_OUTSIDE_MODEL);
+        assert_int_equal(row->vehicle[1 - role_of_van].outside, CP_OUTSIDE_SPEED);
+        cp_result_rows_destroy(&rows);
+    }
+}
+
 static void olc_is_for_struck_fronts_only(void **state)
 {
     (void)state;
@@ -297,6 +344,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(front_to_front),
+        cmocka_unit_test(validity_is_each_cars_own),
         cmocka_unit_test(olc_is_for_struck_fronts_only),
         cmocka_unit_test(crash_without_simulation_is_kept),
         cmocka_unit_test(vehicle_without_model_is_no_car),

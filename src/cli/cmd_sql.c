@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/query_json.h"
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/log.h"
-#include "report/query_json.h"
 #include "store/query.h"
 
 #include <errno.h>

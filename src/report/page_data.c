@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/page_data.h"
 
+#include "analysis/caveats.h"
+#include "analysis/network_background.h"
+#include "analysis/query_json.h"
+#include "analysis/slice_sample.h"
 #include "core/rng.h"
 #include "core/units.h"
 #include "report/answer.h"
 #include "report/assessment_record.h"
-#include "report/caveats.h"
 #include "report/comparison_json.h"
 #include "report/example_query.h"
 #include "report/field_page.h"
+#include "report/figure_json.h"
 #include "report/gallery.h"
 #include "report/network.h"
-#include "report/network_background.h"
 #include "report/paired_points.h"
-#include "report/query_json.h"
 #include "report/slice_curves.h"
-#include "report/slice_sample.h"
 
 #include <math.h>
 #include <stdlib.h>

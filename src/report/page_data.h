@@ -2,7 +2,7 @@
 #ifndef REPORT_PAGE_DATA_H
 #define REPORT_PAGE_DATA_H
 
-#include "report/comparison.h"
+#include "analysis/comparison.h"
 
 #include <jansson.h>
 

@@ -2,8 +2,8 @@
 #ifndef REPORT_PLOT_H
 #define REPORT_PLOT_H
 
+#include "analysis/comparison.h"
 #include "core/error.h"
-#include "report/comparison.h"
 
 /* Figures for papers, drawn by gnuplot without a browser. In the counterfactual design treatments
  * are drawn too: single crashes as what the baseline's became, distributions and crashes above a

@@ -2,7 +2,7 @@
 #ifndef REPORT_PLOT_DATA_H
 #define REPORT_PLOT_DATA_H
 
-#include "report/judged.h"
+#include "analysis/judged.h"
 #include "report/plot.h"
 
 #include <stdio.h>

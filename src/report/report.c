@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/report.h"
 
+#include "analysis/false_activations.h"
 #include "core/file.h"
-#include "report/false_activations.h"
 #include "report/page.h"
 #include "report/page_data.h"
 

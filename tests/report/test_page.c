@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "report/small_study.h"
+#include "builders/small_study.h"
 
 static void places_are_filled_as_they_are(void **state)
 {

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "report/small_study.h"
+#include "builders/small_study.h"
 
 typedef struct fixture {
     cp_store *store;

@@ -2,7 +2,7 @@
 #ifndef ANALYSIS_CONVERGENCE_H
 #define ANALYSIS_CONVERGENCE_H
 
-#include "analysis/comparison.h"
+#include "analysis/figures.h"
 
 /* Whether a study has run long enough: its headline figure over the first replications, then over
  * more and more of them, in the order of their numbers, as many of every scenario. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "analysis/field_comparison.h"
+#include "analysis/field_quantity.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #ifndef ANALYSIS_FIELD_UNITS_H
 #define ANALYSIS_FIELD_UNITS_H
 
-#include "analysis/field_comparison.h"
+#include "analysis/field_figures.h"
 #include "analysis/slice_sample.h"
 
 /* Frontally struck vehicles of a study as units that are weighted. */

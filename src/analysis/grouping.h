@@ -2,7 +2,7 @@
 #ifndef ANALYSIS_GROUPING_H
 #define ANALYSIS_GROUPING_H
 
-#include "analysis/comparison.h"
+#include "analysis/figures.h"
 
 /* The slices a user asks for: of one scenario or all, restricted by an SQL condition, and one for
  * each value of a column. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/judged.h"
 
-#include "analysis/slice_sample.h"
+#include "analysis/exceedance_figures.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef ANALYSIS_JUDGED_H
 #define ANALYSIS_JUDGED_H
 
-#include "analysis/comparison.h"
+#include "analysis/figures.h"
 
 /* Severity of the same crashes with and without treatment (counterfactual design), for figures that
  * draw all variants together: the baseline's frontal crashes that were judged with every treatment,

@@ -1,27 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/quantity.h"
 
-#include "analysis/field_comparison.h"
+#include "analysis/field_quantity.h"
 #include "core/units.h"
-#include "store/comparison_rows.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
-
-void cp_quantities_destroy(cp_quantities *list)
-{
-    free(list->row);
-    *list = (cp_quantities){0};
-}
-
-const char *cp_relation_text(cp_relation relation)
-{
-    static const char *const RELATION[] = {
-        [CP_NO_VALUE] = "", [CP_EXACTLY] = "=", [CP_LESS_THAN] = "<", [CP_MORE_THAN] = ">"};
-    return RELATION[relation];
-}
 
 static cp_estimate counted(size_t value)
 {
@@ -39,18 +23,7 @@ typedef struct writer {
 static cp_quantity *add(const writer *w, const char *name, const char *label, int digits,
                         cp_estimate estimate)
 {
-    cp_quantities *list = w->list;
-    if (list->count == list->room) {
-        size_t room = list->room ? 2 * list->room : 128;
-        cp_quantity *row = realloc(list->row, room * sizeof *row);
-        if (!row) {
-            list->failed = true;
-            return &list->spare;
-        }
-        list->row = row;
-        list->room = room;
-    }
-    cp_quantity *q = &list->row[list->count++];
+    cp_quantity *q = cp_quantities_append(w->list);
     *q = (cp_quantity){.section = w->section,
                        .scope = w->scope,
                        .digits = digits,
@@ -59,13 +32,6 @@ static cp_quantity *add(const writer *w, const char *name, const char *label, in
     snprintf(q->name, sizeof q->name, "%s", name);
     snprintf(q->label, sizeof q->label, "%s", label ? label : "");
     return q;
-}
-
-cp_quantity *cp_quantities_add(cp_quantities *list, const char *section, const char *name,
-                               const char *label, int digits, double factor, double value)
-{
-    const writer w = {list, section, -1, factor};
-    return add(&w, name, label, digits, cp_estimate_of(value));
 }
 
 // The row so many from the end.
@@ -80,20 +46,6 @@ static void add_interval(const writer *w, const char *name, const char *label, i
     cp_quantity *q = add(w, name, label, digits, estimate);
     q->kind = kind;
     q->interval = interval;
-}
-
-const char *cp_quantity_text(char text[CP_QUANTITY_TEXT_SIZE], const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, CP_QUANTITY_TEXT_SIZE, format, list);
-    va_end(list);
-    return text;
-}
-
-double cp_quantity_rounded(double x)
-{
-    return round(x * 1e6) / 1e6;
 }
 
 /* How the quantities are called, in the order of cp_slice_quantity. */
@@ -213,11 +165,6 @@ static void add_exceedance(const writer *w, int what, const cp_exceedance *e)
     add(w, cp_quantity_text(name, "crashes_%.60s_at_least", of),
         "  at least, outside range unknown", 0, counted(e->least));
     add(w, cp_quantity_text(name, "crashes_%.60s_at_most", of), "  at most", 0, counted(e->most));
-}
-
-const char *cp_injury_kind(const cp_study_risk *risk)
-{
-    return risk->function.has_covariance ? "bootstrap and risk function" : "bootstrap";
 }
 
 static void add_injuries(const cp_study_data *data, writer w, const cp_injury_figures *injury)
@@ -558,111 +505,4 @@ void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_f
     w.section = NULL;
     add_benefits(data, &w, figures->benefit);
     cp_field_quantities_of_contrast(data, figures->field, list);
-}
-
-// ---- into the database
-// ---------------------------------------------------------------------------
-
-/* Rows that borrow from lists which live as long. */
-typedef struct stored {
-    cp_comparison_figure_row *row;
-    size_t count;
-    size_t room;
-} stored;
-
-static cp_status append(stored *s, const char *group, const char *variant, const char *against,
-                        const cp_quantities *list, cp_error *error)
-{
-    if (list->failed)
-        return cp_fail_memory(error, "the figures of a comparison");
-    if (s->count + list->count > s->room) {
-        size_t room = 2 * (s->room + list->count);
-        cp_comparison_figure_row *row = realloc(s->row, room * sizeof *row);
-        if (!row)
-            return cp_fail_memory(error, "the figures of a comparison");
-        s->row = row;
-        s->room = room;
-    }
-    for (size_t k = 0; k < list->count; k++) {
-        const cp_quantity *q = &list->row[k];
-        bool interval = q->kind && q->interval.status == CP_INTERVAL_VALUE;
-        const char *kind = NULL;
-        if (q->missing)
-            kind = q->missing;
-        if (q->kind)
-            kind = interval ? q->kind : cp_interval_status_text(q->interval.status);
-        s->row[s->count++] = (cp_comparison_figure_row){
-            .by_value = group,
-            .variant = variant,
-            .against = against,
-            .scope = q->scope < 0 ? "" : CP_SCOPE_TEXT[q->scope],
-            .quantity = q->name,
-            .relation = cp_relation_text(q->estimate.relation),
-            .value = q->estimate.value,
-            .low = interval ? q->interval.low : NAN,
-            .high = interval ? q->interval.high : NAN,
-            .interval = kind,
-        };
-    }
-    return CP_OK;
-}
-
-cp_status cp_comparison_store(cp_store *store, const cp_study_data *data,
-                              const cp_comparison *comparison, const char *const *group,
-                              size_t group_count, const cp_comparison_options *options,
-                              const char *scenario, const char *by, const char *where_sql,
-                              const char *answer, cp_error *error)
-{
-    // One list for every figure list, kept until the rows that borrow from them are written.
-    size_t most = 0, used = 0;
-    for (size_t g = 0; g < group_count; g++)
-        most += comparison[g].variant_count + comparison[g].contrast_count +
-                comparison[g].counterfactual_count;
-    cp_quantities *list = calloc(most + 1, sizeof *list);
-    stored s = {0};
-    cp_status status = list ? CP_OK : cp_fail_memory(error, "the figures of a comparison");
-    for (size_t g = 0; g < group_count && status == CP_OK; g++) {
-        const cp_comparison *c = &comparison[g];
-        const char *baseline = data->variant[c->baseline].name;
-        for (size_t k = 0; k < c->variant_count && status == CP_OK; k++, used++) {
-            cp_quantities_of_variant(data, &c->variant[k], &list[used]);
-            status = append(&s, group[g], data->variant[c->variant[k].variant].name, "",
-                            &list[used], error);
-        }
-        for (size_t k = 0; k < c->contrast_count && status == CP_OK; k++, used++) {
-            cp_quantities_of_contrast(data, &c->contrast[k], &list[used]);
-            status = append(&s, group[g], data->variant[c->contrast[k].variant].name, baseline,
-                            &list[used], error);
-        }
-        for (size_t k = 0; k < c->counterfactual_count && status == CP_OK; k++, used++) {
-            cp_quantities_of_pairs(data, &c->counterfactual[k], &list[used]);
-            status = append(&s, group[g], data->variant[c->counterfactual[k].variant].name,
-                            baseline, &list[used], error);
-        }
-    }
-    if (status == CP_OK && group_count > 0) {
-        const char *design = json_string_value(
-            json_object_get(json_array_get(json_object_get(data->about, "study"), 0), "design"));
-        cp_comparison_rows rows = {
-            .baseline = data->variant[comparison[0].baseline].name,
-            .scenario = scenario,
-            .by = by,
-            .where_sql = where_sql,
-            .design = design ? design : "",
-            .seed = data->seed,
-            .repetitions = options->repetitions,
-            .permutations = options->permutations,
-            .replications = data->replication_count,
-            .crashes = data->crash_count,
-            .answer = answer,
-            .figure = s.row,
-            .figure_count = s.count,
-        };
-        status = cp_comparison_rows_replace(store, &rows, error);
-    }
-    for (size_t k = 0; list && k <= most; k++)
-        cp_quantities_destroy(&list[k]);
-    free(list);
-    free(s.row);
-    return status;
 }

@@ -2,43 +2,7 @@
 #ifndef ANALYSIS_QUANTITY_H
 #define ANALYSIS_QUANTITY_H
 
-#include "analysis/comparison.h"
-
-/* A comparison as a flat list of named figures: what tables print, CSV holds, and the database
- * stores. */
-
-#define CP_QUANTITY_TEXT_SIZE 96
-
-typedef struct cp_quantity {
-    char name[CP_QUANTITY_TEXT_SIZE];  /* with its unit, of CSV and database: "olc_median_g" */
-    char label[CP_QUANTITY_TEXT_SIZE]; /* of the table; empty: not there */
-    bool second;                       /* another interval of the row above: no line of its own */
-    const char *section;               /* heading of the table it belongs under; NULL: none */
-    int scope;                         /* CP_SCOPE_..., -1: does not matter */
-    int digits;                        /* of the table, after the point */
-    double factor;                     /* table's unit over the value's: 3.6 for km/h */
-    const char *kind;    /* of the interval: "bootstrap", "poisson widened", …; NULL: none */
-    const char *missing; /* why there is no value, of a test; NULL: nothing to say */
-    cp_interval interval;
-    cp_estimate estimate;
-} cp_quantity;
-
-/* Zero-initialise; after a failed addition go on, failed tells. */
-typedef struct cp_quantities {
-    cp_quantity *row;
-    size_t count;
-    size_t room;
-    bool failed;       /* memory is gone */
-    cp_quantity spare; /* what is lost then is written here */
-} cp_quantities;
-
-void cp_quantities_destroy(cp_quantities *list);
-
-/* Append one figure, for files of figures beside this one: without scope and interval, exactly
- * value, factor the table's unit over the value's. label "": not in the table. Valid until the next
- * is appended; what is set in it after a failed addition is lost. */
-cp_quantity *cp_quantities_add(cp_quantities *list, const char *section, const char *name,
-                               const char *label, int digits, double factor, double value);
+#include "analysis/quantity_list.h"
 
 /* Append the figures of a variant, of a contrast, of a treatment's pairs. The same names in the
  * same order for every variant of a study. */
@@ -48,26 +12,5 @@ void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figu
                                cp_quantities *list);
 void cp_quantities_of_pairs(const cp_study_data *data, const cp_counterfactual_figures *figures,
                             cp_quantities *list);
-
-/* A name or label of parts, cut at the end; returns text. */
-const char *cp_quantity_text(char text[CP_QUANTITY_TEXT_SIZE], const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-/* A severity in the unit of the table, rid of what converting left behind. */
-double cp_quantity_rounded(double x);
-/* What the interval of injured drivers by a risk function holds: static text. */
-const char *cp_injury_kind(const cp_study_risk *risk);
-
-/* "", "=", "<", ">". */
-const char *cp_relation_text(cp_relation relation);
-
-/* Write a comparison of the groups of `by` (one group and by "" without) as rows of the database.
- * answer may be "". Errors: CP_NO_MEMORY and those of the store. */
-CP_MUST_CHECK cp_status cp_comparison_store(cp_store *store, const cp_study_data *data,
-                                            const cp_comparison *comparison,
-                                            const char *const *group, size_t group_count,
-                                            const cp_comparison_options *options,
-                                            const char *scenario, const char *by,
-                                            const char *where_sql, const char *answer,
-                                            cp_error *error);
 
 #endif

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/caveats.h"
+#include "analysis/comparison.h"
+#include "analysis/comparison_store.h"
 #include "analysis/field_comparison.h"
 #include "analysis/grouping.h"
 #include "analysis/network_background.h"

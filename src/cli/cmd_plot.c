@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/comparison.h"
 #include "analysis/grouping.h"
 #include "cli/args.h"
 #include "cli/commands.h"

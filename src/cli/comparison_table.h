@@ -2,7 +2,7 @@
 #ifndef CLI_COMPARISON_TABLE_H
 #define CLI_COMPARISON_TABLE_H
 
-#include "analysis/comparison.h"
+#include "analysis/figures.h"
 #include "cli/output.h"
 
 /* A comparison for the terminal: one row a quantity, one column a variant, then the answer (NULL:

@@ -2,7 +2,7 @@
 #ifndef REPORT_COMPARISON_JSON_H
 #define REPORT_COMPARISON_JSON_H
 
-#include "analysis/comparison.h"
+#include "analysis/figures.h"
 
 #include <jansson.h>
 

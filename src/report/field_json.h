@@ -2,7 +2,7 @@
 #ifndef REPORT_FIELD_JSON_H
 #define REPORT_FIELD_JSON_H
 
-#include "analysis/field_comparison.h"
+#include "analysis/field_figures.h"
 
 #include <jansson.h>
 

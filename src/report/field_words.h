@@ -2,7 +2,7 @@
 #ifndef REPORT_FIELD_WORDS_H
 #define REPORT_FIELD_WORDS_H
 
-#include "analysis/field_comparison.h"
+#include "analysis/field_figures.h"
 
 /* What to know of it in words: how far the study is from the field, what either never has, what the
  * weights cost, the field's bias. UTF-8, one paragraph; the caller frees. Error: CP_NO_MEMORY. */

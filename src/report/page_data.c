@@ -2,6 +2,7 @@
 #include "report/page_data.h"
 
 #include "analysis/caveats.h"
+#include "analysis/comparison.h"
 #include "analysis/network_background.h"
 #include "analysis/query_json.h"
 #include "analysis/slice_sample.h"
@@ -394,26 +395,4 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     free(p.chosen);
     free(p.drawn);
     return status;
-}
-
-char *cp_page_data_text(const json_t *page)
-{
-    char *json = json_dumps(page, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(10));
-    if (!json)
-        return NULL;
-    // In JSON these three occur inside strings only, where \u003c means the same.
-    size_t size = 1;
-    for (const char *c = json; *c; c++)
-        size += strchr("<>&", *c) ? 6 : 1;
-    char *safe = malloc(size), *end = safe;
-    for (const char *c = json; safe && *c; c++) {
-        if (strchr("<>&", *c))
-            end += sprintf(end, "\\u%04x", (unsigned)*c);
-        else
-            *end++ = *c;
-    }
-    if (safe)
-        *end = '\0';
-    free(json);
-    return safe;
 }

@@ -3,7 +3,7 @@
 #define REPORT_PLOT_DATA_H
 
 #include "analysis/judged.h"
-#include "report/plot.h"
+#include "report/plot_kind.h"
 
 #include <stdio.h>
 

@@ -2,8 +2,8 @@
 #ifndef REPORT_SLICE_CURVES_H
 #define REPORT_SLICE_CURVES_H
 
-#include "analysis/comparison.h"
 #include "analysis/corridor.h"
+#include "analysis/figures.h"
 
 /* What a page draws of a slice as curves, besides its comparison. */
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/convergence.h"
 
+#include "analysis/comparison.h"
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/counterfactual.h"
 
+#include "analysis/comparison.h"
 #include "report/answer.h"
 #include "store/query.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/comparison.h"
 #include "analysis/field_comparison.h"
 #include "report/field_page.h"
 #include "report/field_words.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/model_uncertainty.h"
 
+#include "analysis/comparison.h"
 #include "analysis/quantity.h"
 #include "report/answer.h"
 #include "report/comparison_json.h"

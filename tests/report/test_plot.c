@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/plot.h"
 
+#include "analysis/comparison.h"
 #include "core/file.h"
 
 #include <setjmp.h>

@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/progress.h"
 #include "crash/crash_simulation.h"
+#include "crash/named_vehicle.h"
 #include "crash/shipped_vehicle.h"
 #include "exchange/sumo_places.h"
 #include "store/stored_crash.h"
@@ -37,18 +38,13 @@ static cp_status read_files(cp_assessment *self, cp_error *error)
 static cp_status add_vehicle(cp_study *study, const char *type, const char *model, const char *base,
                              cp_error *error)
 {
-    cp_shipped_vehicle shipped;
     for (size_t k = 0; k < study->vehicle_count; k++)
         if (type != NULL && study->vehicles[k].type != NULL &&
             strcmp(study->vehicles[k].type, type) == 0)
             return CP_OK;
     bool is_path = model != NULL && cp_shipped_vehicle_is_path(model);
-    if (model != NULL && !is_path && !cp_shipped_vehicle_find(model, &shipped))
-        return cp_fail(error, CP_BAD_INPUT,
-                       "%s%sno vehicle '%s' is shipped; a name must be one of %s, a file has a '/' "
-                       "or a '.' in it",
-                       base != NULL ? base : "", base != NULL ? ": " : "", model,
-                       cp_shipped_vehicle_names());
+    if (model != NULL && cp_named_vehicle_check(model, error) != CP_OK)
+        return base != NULL ? cp_error_prefix(error, "%s: ", base) : CP_BAD_INPUT;
     cp_study_vehicle *larger =
         realloc(study->vehicles, (study->vehicle_count + 1) * sizeof *larger);
     if (larger == NULL)

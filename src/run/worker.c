@@ -13,6 +13,7 @@
 #include "store/claim.h"
 #include "store/stored_crash.h"
 #include "study/plan.h"
+#include "study/study_file.h"
 
 #include <math.h>
 #include <stdio.h>

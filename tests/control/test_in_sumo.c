@@ -48,7 +48,7 @@ static outcome run(const char *scenario, double duration_s, const cp_control_set
                    size_t count)
 {
     char path[1024];
-    snprintf(path, sizeof path, "%s/sumo_scenarios/%s/%s.sumocfg", getenv("CRASHPULSE_SOURCE"),
+    snprintf(path, sizeof path, "%s/sumo_scenarios/%s/%s.sumocfg", getenv("CRASHPULSE_BUILD"),
              scenario, scenario);
     cp_traffic_options options = {.sumocfg = path, .seed = 3, .step_length_s = 0.1};
     cp_traffic *traffic;

@@ -278,8 +278,8 @@ static void every_lane_has_random_numbers_of_its_own(void **unused)
     (void)unused;
     char path[1024], net[1024], words[64];
     cp_error error = {0};
-    snprintf(path, sizeof path, "%s/sumo_scenarios/town/town.sumocfg", getenv("CRASHPULSE_SOURCE"));
-    snprintf(net, sizeof net, "%s/sumo_scenarios/town/town.net.xml", getenv("CRASHPULSE_SOURCE"));
+    snprintf(path, sizeof path, "%s/sumo_scenarios/town/town.sumocfg", getenv("CRASHPULSE_BUILD"));
+    snprintf(net, sizeof net, "%s/sumo_scenarios/town/town.net.xml", getenv("CRASHPULSE_BUILD"));
     unsigned lanes = lanes_of(net);
     assert_true(lanes > 64);
     if (sumo_bridge_start(path, 1, 0.1, NULL, 0, &error) != CP_OK)
@@ -297,7 +297,7 @@ static void headings_and_speeds_are_those_of_sumo(void **unused)
     char path[1024];
     cp_error error = {0};
     size_t count, read = 0, turning = 0, standing = 0;
-    snprintf(path, sizeof path, "%s/sumo_scenarios/town/town.sumocfg", getenv("CRASHPULSE_SOURCE"));
+    snprintf(path, sizeof path, "%s/sumo_scenarios/town/town.sumocfg", getenv("CRASHPULSE_BUILD"));
     if (sumo_bridge_start(path, 1, 0.1, NULL, 0, &error) != CP_OK)
         fail_msg("%s", error.text);
     for (int k = 0; k < 900; k++) {

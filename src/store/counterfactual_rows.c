@@ -300,31 +300,3 @@ cp_status cp_counterfactual_rows_write(cp_store *store, int64_t replication_id,
     cp_statement_finish(&w.null_treatment);
     return status;
 }
-
-cp_status cp_counterfactual_pulse_read(cp_store *store, int64_t crash_id, const char *variant,
-                                       const char *role, cp_pulse *pulse, bool *there,
-                                       cp_error *error)
-{
-    cp_statement s;
-    int row = 0;
-    *pulse = (cp_pulse){0};
-    cp_status status = cp_statement_prepare(
-        store, "reading a pulse",
-        "SELECT codec, samples, sample_count, sample_interval_s FROM counterfactual_pulse "
-        "WHERE crash_id = ?1 AND role = ?2 AND variant_id IN (SELECT id FROM variant WHERE name = "
-        "?3)",
-        &s, error);
-    cp_bind_integer(&s, 1, crash_id);
-    cp_bind_text(&s, 2, role);
-    cp_bind_text(&s, 3, variant);
-    if (status == CP_OK)
-        status = cp_statement_row(&s, &row, error);
-    *there = status == CP_OK && row;
-    if (*there)
-        status = cp_pulse_decode(sqlite3_column_int(s.handle, 0), sqlite3_column_blob(s.handle, 1),
-                                 (size_t)sqlite3_column_bytes(s.handle, 1),
-                                 sqlite3_column_int64(s.handle, 2),
-                                 sqlite3_column_double(s.handle, 3), pulse, error);
-    cp_statement_finish(&s);
-    return status;
-}

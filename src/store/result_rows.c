@@ -352,32 +352,3 @@ cp_status cp_result_rows_commit(cp_store *store, const cp_result_rows *rows, cp_
         cp_store_rollback(store);
     return status;
 }
-
-// ---- reading -------------------------------------------------------------------------------
-
-cp_status cp_result_pulse_read(cp_store *store, int64_t crash_id, const char *role, cp_pulse *pulse,
-                               cp_error *error)
-{
-    cp_statement s;
-    int row = 0;
-    *pulse = (cp_pulse){0};
-    cp_status status = cp_statement_prepare(
-        store, "reading a pulse",
-        "SELECT codec, samples, sample_count, sample_interval_s FROM pulse WHERE crash_id = ?1 AND "
-        "role = ?2",
-        &s, error);
-    cp_bind_integer(&s, 1, crash_id);
-    cp_bind_text(&s, 2, role);
-    if (status == CP_OK)
-        status = cp_statement_row(&s, &row, error);
-    if (status == CP_OK && !row)
-        status = cp_fail(error, CP_BAD_INPUT, "%s: there is no pulse of vehicle %s of crash %lld",
-                         cp_store_path(store), role, (long long)crash_id);
-    if (status == CP_OK)
-        status = cp_pulse_decode(sqlite3_column_int(s.handle, 0), sqlite3_column_blob(s.handle, 1),
-                                 (size_t)sqlite3_column_bytes(s.handle, 1),
-                                 sqlite3_column_int64(s.handle, 2),
-                                 sqlite3_column_double(s.handle, 3), pulse, error);
-    cp_statement_finish(&s);
-    return status;
-}

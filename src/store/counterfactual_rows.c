@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/counterfactual_rows.h"
 
+#include "core/array.h"
 #include "core/hash.h"
 #include "crash/validity.h"
 #include "pulse/pulse_codec.h"
@@ -52,35 +53,14 @@ double cp_crash_row_olc_g(const cp_crash_row *crash)
 
 // ---- collecting ----------------------------------------------------------------------------
 
-// Room for one more element, zeroed; growth by doubling at powers of two.
-static void *grow(void **array, size_t *count, size_t size)
-{
-    if ((*count & (*count - 1)) == 0) {
-        void *larger = realloc(*array, (*count == 0 ? 1 : 2 * *count) * size);
-        if (larger == NULL)
-            return NULL;
-        *array = larger;
-    }
-    void *added = (char *)*array + *count * size;
-    memset(added, 0, size);
-    (*count)++;
-    return added;
-}
-
 cp_null_treatment_row *cp_counterfactual_rows_add_null(cp_counterfactual_rows *rows)
 {
-    void *array = rows->null_treatment;
-    cp_null_treatment_row *added = grow(&array, &rows->null_treatment_count, sizeof *added);
-    rows->null_treatment = array;
-    return added;
+    return cp_array_add(rows->null_treatment, rows->null_treatment_count);
 }
 
 cp_counterfactual_row *cp_counterfactual_rows_add(cp_counterfactual_rows *rows)
 {
-    void *array = rows->row;
-    cp_counterfactual_row *added = grow(&array, &rows->row_count, sizeof *added);
-    rows->row = array;
-    return added;
+    return cp_array_add(rows->row, rows->row_count);
 }
 
 void cp_counterfactual_rows_destroy(cp_counterfactual_rows *rows)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/result_rows.h"
 
+#include "core/array.h"
 #include "crash/validity.h"
 #include "pulse/pulse_codec.h"
 #include "store/counterfactual_rows.h"
@@ -15,43 +16,19 @@ static const char *const ROLE[2] = {"a", "b"};
 
 // ---- collecting ----------------------------------------------------------------------------
 
-// Room for one more element, zeroed; growth by doubling at powers of two.
-static void *grow(void **array, size_t *count, size_t size)
-{
-    if ((*count & (*count - 1)) == 0) {
-        void *larger = realloc(*array, (*count == 0 ? 1 : 2 * *count) * size);
-        if (larger == NULL)
-            return NULL;
-        *array = larger;
-    }
-    void *added = (char *)*array + *count * size;
-    memset(added, 0, size);
-    (*count)++;
-    return added;
-}
-
 cp_crash_row *cp_result_rows_add_crash(cp_result_rows *rows)
 {
-    void *array = rows->crash;
-    cp_crash_row *added = grow(&array, &rows->crash_count, sizeof *added);
-    rows->crash = array;
-    return added;
+    return cp_array_add(rows->crash, rows->crash_count);
 }
 
 cp_contact_row *cp_result_rows_add_contact(cp_result_rows *rows)
 {
-    void *array = rows->contact;
-    cp_contact_row *added = grow(&array, &rows->contact_count, sizeof *added);
-    rows->contact = array;
-    return added;
+    return cp_array_add(rows->contact, rows->contact_count);
 }
 
 cp_sumo_collision_row *cp_result_rows_add_sumo_collision(cp_result_rows *rows)
 {
-    void *array = rows->sumo_collision;
-    cp_sumo_collision_row *added = grow(&array, &rows->sumo_collision_count, sizeof *added);
-    rows->sumo_collision = array;
-    return added;
+    return cp_array_add(rows->sumo_collision, rows->sumo_collision_count);
 }
 
 void cp_result_rows_destroy(cp_result_rows *rows)

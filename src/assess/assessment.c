@@ -3,6 +3,7 @@
 
 #include "assess/collisions.h"
 #include "assess/configurations.h"
+#include "core/array.h"
 #include "core/file.h"
 #include "core/progress.h"
 #include "crash/crash_simulation.h"
@@ -45,12 +46,9 @@ static cp_status add_vehicle(cp_study *study, const char *type, const char *mode
     bool is_path = model != NULL && cp_shipped_vehicle_is_path(model);
     if (model != NULL && cp_named_vehicle_check(model, error) != CP_OK)
         return base != NULL ? cp_error_prefix(error, "%s: ", base) : CP_BAD_INPUT;
-    cp_study_vehicle *larger =
-        realloc(study->vehicles, (study->vehicle_count + 1) * sizeof *larger);
-    if (larger == NULL)
+    cp_study_vehicle *added = cp_array_add(study->vehicles, study->vehicle_count);
+    if (added == NULL)
         return cp_fail_memory(error, "vehicles");
-    study->vehicles = larger;
-    cp_study_vehicle *added = &study->vehicles[study->vehicle_count++];
     *added = (cp_study_vehicle){.type = type != NULL ? strdup(type) : NULL};
     if (is_path)
         added->model_path = base != NULL ? cp_file_beside(base, model) : strdup(model);

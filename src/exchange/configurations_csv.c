@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/configurations_csv.h"
 
+#include "core/array.h"
 #include "core/file.h"
 #include "core/units.h"
 
@@ -239,18 +240,11 @@ static cp_status take_row(reading *self, char *line, cp_error *error)
     cp_status status = fill_texts(self, &row, error);
     if (status == CP_OK)
         status = fill_numbers(self, &row, error);
-    if (status == CP_OK && (list->count & (list->count - 1)) == 0) {
-        size_t room = list->count == 0 ? 1 : 2 * list->count;
-        cp_listed_configuration *larger = realloc(list->row, room * sizeof *larger);
-        if (larger == NULL)
-            status = cp_fail_memory(error, "configurations");
-        else
-            list->row = larger;
-    }
-    if (status == CP_OK && tsearch(row.id, &self->ids, compare_texts) == NULL)
+    cp_listed_configuration *added = status == CP_OK ? cp_array_add(list->row, list->count) : NULL;
+    if (status == CP_OK && (added == NULL || tsearch(row.id, &self->ids, compare_texts) == NULL))
         status = cp_fail_memory(error, "configurations");
     if (status == CP_OK)
-        list->row[list->count++] = row;
+        *added = row;
     else
         destroy_row(&row);
     return status;

@@ -2,6 +2,7 @@
 #include "store/stored_crash.h"
 
 #include "pulse/pulse_codec.h"
+#include "store/pulse_columns.h"
 #include "store/result_rows.h"
 #include "store/store_sqlite.h"
 
@@ -53,7 +54,6 @@ static const char *text_of(const cp_statement *s, int column)
     "'covers_outline', 0), v.sumo_type, instr(',' || v.validity || ',', ',no_model,') > 0 "
 #define OF_REPLICATION                                                                             \
     "JOIN crash AS c ON c.id = v.crash_id JOIN replication AS r ON r.id = c.replication_id "
-#define PULSE_COLUMNS "SELECT codec, samples, sample_count, sample_interval_s "
 
 // Queries for crash ?1 and vehicle ?2: of the study, and under treatment ?3.
 static const char *const READ_CRASH[2] = {
@@ -72,8 +72,9 @@ static const char *const READ_VEHICLE[2] = {
                     "v.vehicle_model " OF_REPLICATION
                     "WHERE v.crash_id = ?1 AND v.role = ?2 AND v.variant_id = ?3"};
 static const char *const READ_PULSE[2] = {
-    PULSE_COLUMNS "FROM pulse WHERE crash_id = ?1 AND role = ?2 AND ?3 IS NULL", PULSE_COLUMNS
-    "FROM counterfactual_pulse WHERE crash_id = ?1 AND role = ?2 AND variant_id = ?3"};
+    "SELECT " CP_PULSE_COLUMNS " FROM pulse WHERE crash_id = ?1 AND role = ?2 AND ?3 IS NULL",
+    "SELECT " CP_PULSE_COLUMNS
+    " FROM counterfactual_pulse WHERE crash_id = ?1 AND role = ?2 AND variant_id = ?3"};
 
 // Prepare one of them for the crash and run it; row tells whether there is an answer.
 static cp_status begin_reading(cp_store *store, const char *what, const char *const sql[2],
@@ -277,10 +278,7 @@ static cp_status compare_samples(const cp_statement *s, const cp_pulse *record, 
                                  cp_error *error)
 {
     cp_pulse stored = {0};
-    cp_status status = cp_pulse_decode(
-        sqlite3_column_int(s->handle, 0), sqlite3_column_blob(s->handle, 1),
-        (size_t)sqlite3_column_bytes(s->handle, 1), sqlite3_column_int64(s->handle, 2),
-        sqlite3_column_double(s->handle, 3), &stored, error);
+    cp_status status = cp_pulse_of_columns(s, 0, &stored, error);
     *same = status == CP_OK && stored.sample_count == record->sample_count &&
             stored.sample_interval_s == record->sample_interval_s;
     for (int c = 0; *same && c < CP_CHANNEL_COUNT; c++)

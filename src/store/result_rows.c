@@ -192,6 +192,14 @@ static void bind_place(cp_statement *s, const cp_crash_row *crash, int role)
         cp_bind_integer(s, 45, errors);
 }
 
+// How far it was pushed in: parameters 46 to 48.
+static void bind_intrusion(cp_statement *s, const cp_crash_vehicle_row *vehicle)
+{
+    cp_bind_real(s, 46, vehicle->intrusion_m);
+    cp_bind_text(s, 47, vehicle->intrusion_zone);
+    cp_bind_real(s, 48, vehicle->severity.max_50ms_y_g);
+}
+
 void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_row *crash, int role,
                            char validity[CP_VALIDITY_TEXT_SIZE])
 {
@@ -200,6 +208,7 @@ void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_row *crash, int role,
     cp_bind_text(s, 21, cp_validity_text(vehicle->outside, validity));
     bind_severity(s, vehicle);
     bind_place(s, crash, role);
+    bind_intrusion(s, vehicle);
 }
 
 static cp_status write_vehicle(cp_statement *s, const cp_result_rows *rows, size_t number, int role,
@@ -295,7 +304,7 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
             "INSERT INTO crash_vehicle SELECT ?1, ?2, scenario_id, variant_id, ?4, ?5, ?6, ?7, ?8, "
             "?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, "
             "?26, ?27, ?28, ?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40, ?41, ?42, "
-            "?43, ?44, ?45 FROM replication WHERE id = ?3",
+            "?43, ?44, ?45, ?46, ?47, ?48 FROM replication WHERE id = ?3",
             &vehicle, error);
     if (status == CP_OK)
         status = cp_statement_prepare(

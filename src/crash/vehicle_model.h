@@ -107,16 +107,16 @@
     X(side_front_wheel_1, "1", 0.15, 0.02, 0.45,                                                   \
       "share of the side, firewall to rear structure, that is the front wheel's zone")             \
     X(side_rear_wheel_1, "1", 0.25, 0.02, 0.45, "likewise the rear wheel's; between: the door's")  \
-    X(side_front_wheel_begin_kn_m, "kN/m", 50, 2, 2000,                                            \
+    X(side_front_wheel_begin_kn_m, "kN/m", 25, 2, 2000,                                            \
       "force on a metre of the front wheel's zone where collapse begins")                          \
-    X(side_front_wheel_end_kn_m, "kN/m", 300, 2, 4000, "the same where nothing is left")           \
-    X(side_door_begin_kn_m, "kN/m", 25, 2, 2000,                                                   \
+    X(side_front_wheel_end_kn_m, "kN/m", 220, 2, 4000, "the same where nothing is left")           \
+    X(side_door_begin_kn_m, "kN/m", 18, 2, 2000,                                                   \
       "force on a metre of door and B-pillar where collapse begins")                               \
-    X(side_door_end_kn_m, "kN/m", 220, 2, 4000, "the same where nothing is left")                  \
-    X(side_rear_wheel_begin_kn_m, "kN/m", 40, 2, 2000,                                             \
+    X(side_door_end_kn_m, "kN/m", 160, 2, 4000, "the same where nothing is left")                  \
+    X(side_rear_wheel_begin_kn_m, "kN/m", 22, 2, 2000,                                             \
       "force on a metre of the rear wheel's zone where collapse begins")                           \
-    X(side_rear_wheel_end_kn_m, "kN/m", 260, 2, 4000, "the same where nothing is left")            \
-    X(side_spread_m, "m", 1.4, 0.05, 3,                                                            \
+    X(side_rear_wheel_end_kn_m, "kN/m", 180, 2, 4000, "the same where nothing is left")            \
+    X(side_spread_m, "m", 1.8, 0.05, 3,                                                            \
       "how much wider than what presses on it the side yields: sill, roof rail, pillars")          \
     X(rear_bumper_m, "m", 0.06, 0.005, 0.3, "travel of the rear bumper")                           \
     X(rear_bumper_kn, "kN", 60, 2, 800, "force of the rear bumper over its travel, whole width")   \

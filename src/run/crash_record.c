@@ -20,6 +20,7 @@ static const cp_severity NO_SEVERITY = {
     .mean_g = NAN,
     .t_v0_s = NAN,
     .max_50ms_g = NAN,
+    .max_50ms_y_g = NAN,
     .asi_1 = NAN,
     .pdof_rad = NAN,
     .yaw_change_rad_s = NAN};
@@ -105,6 +106,7 @@ static cp_status fill_vehicle(const cp_crash_facts *facts, const cp_impact_names
         vehicle->outside |= CP_OUTSIDE_DAMAGED;
     vehicle->severity = NO_SEVERITY;
     vehicle->crush_m = vehicle->absorbed_j = vehicle->ees_m_s = vehicle->olc_sd_g = NAN;
+    vehicle->intrusion_m = NAN;
     return fill_place(names->lane[role], vehicle, error);
 }
 
@@ -138,6 +140,8 @@ static cp_status simulate(const cp_stand_in cars[2], const cp_crash_configuratio
         for (int role = 0; role < 2; role++) {
             row->vehicle[role].severity = result.severity[role];
             row->vehicle[role].crush_m = result.crush_m[role];
+            row->vehicle[role].intrusion_m = result.struck[role].depth_m;
+            row->vehicle[role].intrusion_zone = cp_struck_zone_text(result.struck[role].zone);
             row->vehicle[role].absorbed_j = result.whole[role].absorbed_j;
             row->vehicle[role].ees_m_s = result.whole[role].ees_m_s;
         }

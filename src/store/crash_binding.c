@@ -65,6 +65,14 @@ static void bind_place(cp_statement *s, const cp_crash_row *crash, int role)
         cp_bind_integer(s, 45, errors);
 }
 
+// How far it was pushed in: parameters 46 to 48.
+static void bind_intrusion(cp_statement *s, const cp_crash_vehicle_row *vehicle)
+{
+    cp_bind_real(s, 46, vehicle->intrusion_m);
+    cp_bind_text(s, 47, vehicle->intrusion_zone);
+    cp_bind_real(s, 48, vehicle->severity.max_50ms_y_g);
+}
+
 void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_row *crash, int role,
                            char validity[CP_VALIDITY_TEXT_SIZE])
 {
@@ -73,6 +81,7 @@ void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_row *crash, int role,
     cp_bind_text(s, 21, cp_validity_text(vehicle->outside, validity));
     bind_severity(s, vehicle);
     bind_place(s, crash, role);
+    bind_intrusion(s, vehicle);
 }
 
 // OLC by every parameter set, parameters 1 to key being bound already.

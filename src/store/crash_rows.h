@@ -34,6 +34,8 @@ typedef struct cp_crash_vehicle_row {
     double crush_m;       /* NAN when the simulation failed, as the next two */
     double absorbed_j;
     double ees_m_s;
+    double intrusion_m;             /* NAN when the simulation failed */
+    const char *intrusion_zone;     /* static text; NULL likewise */
     double olc_sd_g;                /* over the ensemble of its model; NAN without one */
     size_t member_count;            /* 0: no ensemble, or not frontal */
     cp_olc member[CP_ENSEMBLE_MAX]; /* OLC by every parameter set of it */

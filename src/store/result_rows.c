@@ -60,6 +60,7 @@ void cp_crash_row_destroy(cp_crash_row *crash)
         free(crash->vehicle[v].sumo_id);
         free(crash->vehicle[v].sumo_type);
         free(crash->vehicle[v].vehicle_model);
+        free(crash->vehicle[v].drawn);
         free(crash->vehicle[v].lane);
         free(crash->vehicle[v].edge);
         free(crash->vehicle[v].junction);
@@ -200,6 +201,24 @@ static void bind_intrusion(cp_statement *s, const cp_crash_vehicle_row *vehicle)
     cp_bind_real(s, 48, vehicle->severity.max_50ms_y_g);
 }
 
+// What was drawn of the car, and what speaks for its severity: parameters 49 to 52.
+static void bind_car(cp_statement *s, const cp_crash_vehicle_row *vehicle)
+{
+    const cp_olc *olc = &vehicle->severity.olc;
+    bool is_drawn = vehicle->drawn != NULL && vehicle->drawn[0] != '\0';
+    bool has_class = vehicle->evidence_class != NULL;
+    double error_1 = has_class ? vehicle->class_error_1 : NAN;
+    double olc_g = NAN;
+    if (olc->status == CP_OLC_VALUE)
+        olc_g = olc->olc_g;
+    else if (olc->status == CP_OLC_NO_DECELERATION || olc->status == CP_OLC_BEYOND_HORIZON)
+        olc_g = 0.0;
+    cp_bind_text(s, 49, is_drawn ? vehicle->drawn : NULL);
+    cp_bind_text(s, 50, vehicle->evidence_class);
+    cp_bind_real(s, 51, error_1);
+    cp_bind_real(s, 52, error_1 * olc_g);
+}
+
 void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_row *crash, int role,
                            char validity[CP_VALIDITY_TEXT_SIZE])
 {
@@ -209,6 +228,7 @@ void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_row *crash, int role,
     bind_severity(s, vehicle);
     bind_place(s, crash, role);
     bind_intrusion(s, vehicle);
+    bind_car(s, vehicle);
 }
 
 static cp_status write_vehicle(cp_statement *s, const cp_result_rows *rows, size_t number, int role,
@@ -304,7 +324,7 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
             "INSERT INTO crash_vehicle SELECT ?1, ?2, scenario_id, variant_id, ?4, ?5, ?6, ?7, ?8, "
             "?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, "
             "?26, ?27, ?28, ?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40, ?41, ?42, "
-            "?43, ?44, ?45, ?46, ?47, ?48 FROM replication WHERE id = ?3",
+            "?43, ?44, ?45, ?46, ?47, ?48, ?49, ?50, ?51, ?52 FROM replication WHERE id = ?3",
             &vehicle, error);
     if (status == CP_OK)
         status = cp_statement_prepare(

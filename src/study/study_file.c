@@ -5,6 +5,7 @@
 #include "core/yaml_file.h"
 #include "study/assessment_section.h"
 #include "study/control_section.h"
+#include "study/fleet_section.h"
 #include "study/study_parts.h"
 #include "study/sumo_configuration.h"
 #include "study/sweep_section.h"
@@ -82,8 +83,11 @@ typedef struct raw_vehicle_type {
 
 typedef struct raw_vehicles {
     char *standard;
+    char *fleet;
     raw_vehicle_type *types;
     unsigned types_count;
+    cp_market_entry *market;
+    unsigned market_count;
 } raw_vehicles;
 
 typedef struct raw_study {
@@ -162,8 +166,9 @@ static const cyaml_schema_value_t VEHICLE_TYPE = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_vehicle_type, VEHICLE_TYPE_FIELDS)};
 
 static const cyaml_schema_field_t VEHICLES_FIELDS[] = {
-    TEXT_OPTIONAL("default", raw_vehicles, standard),
-    LIST_OPTIONAL("types", raw_vehicles, types, VEHICLE_TYPE), CYAML_FIELD_END};
+    TEXT_OPTIONAL("default", raw_vehicles, standard), TEXT_OPTIONAL("fleet", raw_vehicles, fleet),
+    LIST_OPTIONAL("types", raw_vehicles, types, VEHICLE_TYPE),
+    LIST_OPTIONAL("market", raw_vehicles, market, CP_MARKET_ENTRY), CYAML_FIELD_END};
 
 static const cyaml_schema_field_t COUNTERFACTUAL_FIELDS[] = {
     TEXT_OPTIONAL("checkpoint_interval_s", raw_counterfactual, checkpoint_interval_s),
@@ -607,8 +612,12 @@ static cp_status take_vehicles(const cp_yaml_file *file, const raw_vehicles *giv
     if (study->vehicles == NULL)
         return cp_fail_memory(error, "vehicles");
     study->vehicle_count = (size_t)raw->types_count + 1;
-    cp_status status = CP_OK;
-    if (raw->standard != NULL)
+    if (raw->standard != NULL && raw->fleet != NULL)
+        return cp_yaml_fail(file, error, "vehicles.fleet",
+                            "does not go with vehicles.default: the cars of a fleet are drawn");
+    cp_status status =
+        cp_fleet_section_take(file, raw->fleet, raw->market, raw->market_count, study, error);
+    if (status == CP_OK && raw->standard != NULL)
         status = take_model(file, "vehicles.default", raw->standard, &study->vehicles[0], error);
     for (size_t k = 0; status == CP_OK && k < raw->types_count; k++) {
         char path[KEY_PATH_SIZE];
@@ -676,9 +685,14 @@ void cp_study_destroy(cp_study *study)
         free(study->vehicles[k].model_path);
         free(study->vehicles[k].model_name);
     }
+    for (size_t k = 0; k < study->market_count; k++) {
+        free(study->market[k].type);
+        free(study->market[k].vehicle_class);
+    }
     free(study->scenarios);
     free(study->variants);
     free(study->vehicles);
+    free(study->market);
     free(study->question);
     free(study->name);
     free(study->content);

@@ -6,7 +6,7 @@
 #include "crash/crash_simulation.h"
 #include "run/background.h"
 #include "run/confinement.h"
-#include "run/fleet.h"
+#include "run/fleet_car.h"
 #include "run/owner.h"
 #include "run/replication.h"
 #include "run/vehicle_types.h"
@@ -116,6 +116,7 @@ cp_status cp_worker_run(const char *study_path, const char *db_path, int64_t rep
     if (status == CP_OK)
         status = claim(db_path, replication, &attempt, error);
     *elsewhere = status == CP_OK && attempt == 0;
+    cp_fleet_begin(&fleet, replication->number);
     if (status == CP_OK && attempt > 0)
         status = run_claimed(&study, &fleet, replication, attempt, db_path, error);
 done:

@@ -242,7 +242,7 @@ static cp_status prepare(writer *w, cp_store *store, cp_error *error)
             "INSERT INTO counterfactual_vehicle VALUES (?1, ?3, ?2, ?5, ?6, ?7, ?8, ?9, ?10, ?11, "
             "?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, ?26, ?27, ?28, "
             "?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40, ?41, ?42, ?43, ?44, ?45, "
-            "?46, ?47, ?48)",
+            "?46, ?47, ?48, ?49, ?50, ?51, ?52)",
             &w->vehicle, error);
     if (status == CP_OK)
         status = cp_statement_prepare(

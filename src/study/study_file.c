@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "study/control_section.h"
 #include "study/study_schema.h"
+#include "study/fleet_section.h"
 #include "study/sumo_configuration.h"
 
 #include <ctype.h>
@@ -415,8 +416,12 @@ static cp_status take_vehicles(const cp_yaml_file *file, const cp_raw_vehicles *
     if (study->vehicles == NULL)
         return cp_fail_memory(error, "vehicles");
     study->vehicle_count = (size_t)raw->types_count + 1;
-    cp_status status = CP_OK;
-    if (raw->standard != NULL)
+    if (raw->standard != NULL && raw->fleet != NULL)
+        return cp_yaml_fail(file, error, "vehicles.fleet",
+                            "does not go with vehicles.default: the cars of a fleet are drawn");
+    cp_status status =
+        cp_fleet_section_take(file, raw->fleet, raw->market, raw->market_count, study, error);
+    if (status == CP_OK && raw->standard != NULL)
         status = take_model(file, "vehicles.default", raw->standard, &study->vehicles[0], error);
     for (size_t k = 0; status == CP_OK && k < raw->types_count; k++) {
         char path[KEY_PATH_SIZE];

@@ -55,7 +55,9 @@ static const cyaml_schema_value_t VEHICLE_TYPE = {
 
 static const cyaml_schema_field_t VEHICLES_FIELDS[] = {
     TEXT_OPTIONAL("default", cp_raw_vehicles, standard),
-    LIST_OPTIONAL("types", cp_raw_vehicles, types, VEHICLE_TYPE), CYAML_FIELD_END};
+    TEXT_OPTIONAL("fleet", cp_raw_vehicles, fleet),
+    LIST_OPTIONAL("types", cp_raw_vehicles, types, VEHICLE_TYPE),
+    LIST_OPTIONAL("market", cp_raw_vehicles, market, CP_MARKET_ENTRY), CYAML_FIELD_END};
 
 static const cyaml_schema_field_t COUNTERFACTUAL_FIELDS[] = {
     TEXT_OPTIONAL("checkpoint_interval_s", cp_raw_counterfactual, checkpoint_interval_s),

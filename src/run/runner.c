@@ -596,6 +596,7 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
     free(run.jobs);
     free(run.waiting);
     free(run.background_missing);
+    cp_store_finish(run.store);
     cp_store_close(run.store);
     cp_plan_destroy(&run.plan);
     cp_fleet_destroy(&run.fleet);

@@ -2,7 +2,7 @@
 #ifndef CALIBRATE_SUITE_CASE_H
 #define CALIBRATE_SUITE_CASE_H
 
-#include "calibrate/suite_file.h"
+#include "calibrate/suite.h"
 #include "crash/vehicle_model.h"
 
 /* The cases of a class for one vehicle, and what is simulated for one of them. */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/query_json.h"
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/installation.h"
 #include "core/log.h"
-#include "report/query_json.h"
 #include "store/query.h"
 
 #include <errno.h>

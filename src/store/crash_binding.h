@@ -3,7 +3,7 @@
 #define STORE_CRASH_BINDING_H
 
 #include "crash/validity.h"
-#include "store/result_rows.h"
+#include "store/crash_rows.h"
 #include "store/store_sqlite.h"
 
 /* What crash_vehicle and counterfactual_vehicle have in common; for the files of this folder. */

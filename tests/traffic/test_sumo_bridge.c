@@ -98,7 +98,7 @@ static void states_come_in_our_frame(void **unused)
     assert_string_equal(sumo_bridge_type_id(first->type), "exact");
     assert_string_equal(sumo_bridge_lane_id(first->lane), "east_0");
     assert_string_equal(sumo_bridge_lane_id(oncoming->lane), "west_0");
-    assert_string_equal(sumo_bridge_vehicle_id(SUMO_BRIDGE_NONE), "");
+    assert_string_equal(sumo_bridge_vehicle_id(CP_NO_NUMBER), "");
     sumo_bridge_stop();
 }
 
@@ -107,7 +107,7 @@ static void vehicles_are_announced_when_they_come_and_go(void **unused)
     (void)unused;
     start(1, 0.1);
     size_t come = 0, there = 0, count = 0;
-    uint32_t numbers[3] = {SUMO_BRIDGE_NONE, SUMO_BRIDGE_NONE, SUMO_BRIDGE_NONE};
+    uint32_t numbers[3] = {CP_NO_NUMBER, CP_NO_NUMBER, CP_NO_NUMBER};
     while (sumo_bridge_time_s() < 100.0 && (come < 3 || there > 0)) {
         const cp_vehicle_state *states = step(&count);
         const uint32_t *vehicles;

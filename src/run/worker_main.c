@@ -171,6 +171,7 @@ int main(int argc, char **argv)
     cp_error error = {0};
     int elsewhere = 0;
     json_set_alloc_funcs(cp_memory_for_json, free); // or fields would be missing without a word
+    unsetenv(CP_LOG_FORMAT_VARIABLE); // its messages are passed on by whoever started it
     if (argp_parse(&ARGP, argc, argv, 0, NULL, &arguments) != 0)
         return 2;
     if (!follow_parent(arguments.parent))

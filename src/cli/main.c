@@ -20,6 +20,7 @@ typedef struct command {
 static const command COMMAND[] = {
     {"init", cmd_init, "begin a study of a network"},
     {"doctor", cmd_doctor, "see whether everything that is needed works"},
+    {"reference", cmd_reference, "what every key of the input files means"},
     {"run", cmd_run, "simulate a study: traffic, crashes, pulses, into a database"},
     {"plan", cmd_plan, "show what a study would run"},
     {"background", cmd_background, "what contacts a network makes without driver errors"},

@@ -64,6 +64,9 @@ def check_files(prefix):
                 for folder in (source, build):
                     assert str(folder).encode() not in content, f"{path} names {folder}"
     assert programs >= 4, f"{programs} programs and libraries"
+    for part in ("share/man/man1/crashpulse-run.1", "share/bash-completion/completions/crashpulse", "include/crashpulse.h",
+                 "share/crashpulse/sumo_scenarios/town/town.rou.xml", "share/crashpulse/db/queries/worst_crashes.sql"):
+        assert (prefix / part).is_file(), f"{part} is missing"
 
 
 def check_program(program, data, before, folder):

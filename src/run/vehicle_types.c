@@ -43,8 +43,11 @@ static void add_vehicle(json_t *types, const cp_crash_vehicle_row *vehicle)
         return;
     bool has_model = vehicle->no_model_reason[0] == '\0';
     if (!has_model)
-        cp_log_warning("crashes of vehicle type %s are kept without a severity: %s",
-                       vehicle->sumo_type, vehicle->no_model_reason);
+        cp_log_warning(
+            "crashes of vehicle type %s are kept without a severity: %s; this line of the "
+            "study file gives them MODEL, a shipped one or a vehicle file: vehicles: "
+            "{types: [{type: \"%s\", model: MODEL}]}",
+            vehicle->sumo_type, vehicle->no_model_reason, vehicle->sumo_type);
     json_object_set_new(types, vehicle->sumo_type,
                         json_pack("{s:s?, s:s?, s:s?}", "model",
                                   has_model ? vehicle->vehicle_model : NULL, "chosen_by",

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/control_section.h"
 
+#include "core/nearest.h"
+
 #include <stdio.h>
 #include <string.h>
 
 #define KEY_PATH_SIZE 512
 #define NAMES_SIZE 1024
+#define NAMES_MAX 64
 
 // "a, b, c" of the names that would have been right.
 static void append_name(char names[NAMES_SIZE], const char *name)
@@ -17,21 +20,33 @@ static void append_name(char names[NAMES_SIZE], const char *name)
 static cp_status fail_unknown_control(const cp_yaml_file *file, cp_control_kind kind,
                                       const char *key_path, const char *name, cp_error *error)
 {
-    char names[NAMES_SIZE] = "";
-    for (size_t k = 0; k < CP_CONTROL_TYPE_COUNT; k++)
-        if (CP_CONTROL_TYPE[k]->kind == kind)
-            append_name(names, CP_CONTROL_TYPE[k]->name);
-    return cp_yaml_fail(file, error, key_path, "must be one of %s; found '%s'", names, name);
+    char names[NAMES_SIZE] = "", meant[CP_NEAREST_TEXT_SIZE];
+    const char *list[NAMES_MAX];
+    size_t count = 0;
+    for (size_t k = 0; k < CP_CONTROL_TYPE_COUNT; k++) {
+        if (CP_CONTROL_TYPE[k]->kind != kind)
+            continue;
+        append_name(names, CP_CONTROL_TYPE[k]->name);
+        if (count < NAMES_MAX)
+            list[count++] = CP_CONTROL_TYPE[k]->name;
+    }
+    return cp_yaml_fail(file, error, key_path, "must be one of %s; found '%s'%s", names, name,
+                        cp_nearest_text(name, list, count, meant));
 }
 
 static cp_status fail_unknown_parameter(const cp_yaml_file *file, const cp_control_type *type,
                                         const char *key_path, cp_error *error)
 {
-    char names[NAMES_SIZE] = "";
-    for (size_t k = 0; k < type->parameter_count; k++)
+    char names[NAMES_SIZE] = "", meant[CP_NEAREST_TEXT_SIZE];
+    const char *list[CP_CONTROL_PARAMETERS_MAX];
+    for (size_t k = 0; k < type->parameter_count; k++) {
         append_name(names, type->parameters[k].name);
-    return cp_yaml_fail(file, error, key_path, "is not a parameter of %s; it has %s", type->name,
-                        names[0] != '\0' ? names : "none");
+        list[k] = type->parameters[k].name;
+    }
+    const char *dot = strrchr(key_path, '.');
+    cp_nearest_text(dot != NULL ? dot + 1 : key_path, list, type->parameter_count, meant);
+    return cp_yaml_fail(file, error, key_path, "is not a parameter of %s; it has %s%s", type->name,
+                        names[0] != '\0' ? names : "none", meant);
 }
 
 static cp_status read_parameter(const cp_yaml_file *file, const cp_yaml_line *line,

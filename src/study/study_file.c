@@ -5,6 +5,7 @@
 #include "core/yaml_file.h"
 #include "study/assessment_section.h"
 #include "study/control_section.h"
+#include "study/library_section.h"
 #include "study/study_parts.h"
 #include "study/sumo_configuration.h"
 #include "study/sweep_section.h"
@@ -40,6 +41,9 @@ typedef struct raw_share {
 
 typedef struct raw_control {
     char *name;
+    char *library; /* of a function from one, */
+    char *as;      /* its name in tables, */
+    char *data;    /* and a file for it */
     raw_share *equipment;
     unsigned equipment_count;
 } raw_control;
@@ -135,8 +139,13 @@ static const cyaml_schema_value_t SHARE = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_share, SHARE_FIELDS)};
 
 static const cyaml_schema_field_t FUNCTION_FIELDS[] = {
-    TEXT("function", raw_control, name), CYAML_FIELD_IGNORE("parameters", CYAML_FLAG_OPTIONAL),
-    LIST_OPTIONAL("equipment", raw_control, equipment, SHARE), CYAML_FIELD_END};
+    TEXT("function", raw_control, name),
+    CYAML_FIELD_IGNORE("parameters", CYAML_FLAG_OPTIONAL),
+    TEXT_OPTIONAL("library", raw_control, library),
+    TEXT_OPTIONAL("as", raw_control, as),
+    TEXT_OPTIONAL("data", raw_control, data),
+    LIST_OPTIONAL("equipment", raw_control, equipment, SHARE),
+    CYAML_FIELD_END};
 static const cyaml_schema_value_t FUNCTION = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_control, FUNCTION_FIELDS)};
 
@@ -409,13 +418,17 @@ static cp_status take_controls(const cp_yaml_file *file, cp_control_kind kind,
                                                    &(*settings)[k], error);
         (*settings_count)++;
         if (status == CP_OK)
+            status = cp_library_section_read(file, path, raw[k].name, raw[k].library, raw[k].as,
+                                             raw[k].data, &(*settings)[k], error);
+        if (status == CP_OK)
             status = take_equipment(file, path, &raw[k], &(*settings)[k], error);
         if (status != CP_OK)
             return status;
         // Draws depend on the control's name: the same twice would act in lockstep.
         for (size_t other = 0; other < k; other++)
-            if ((*settings)[other].type == (*settings)[k].type)
-                return cp_yaml_fail(file, error, path, "repeats '%s'", raw[k].name);
+            if (strcmp(cp_control_name(&(*settings)[other]), cp_control_name(&(*settings)[k])) == 0)
+                return cp_yaml_fail(file, error, path, "repeats '%s'",
+                                    cp_control_name(&(*settings)[k]));
     }
     return CP_OK;
 }

@@ -25,10 +25,11 @@ typedef struct arguments {
     long shards;
     long jobs;           /* worker processes of a task */
     bool free_outputs;   /* SUMO may write and connect where the scenarios say */
+    bool allow_plugins;  /* the study's libraries are loaded */
     const char *options; /* further words for sbatch */
 } arguments;
 
-enum { SLURM = 256, SHARDS, DRY_RUN, SBATCH, FREE_OUTPUTS };
+enum { SLURM = 256, SHARDS, DRY_RUN, SBATCH, FREE_OUTPUTS, ALLOW_PLUGINS };
 
 static const struct argp_option OPTIONS[] = {
     {"slurm", SLURM, NULL, 0, "submit to Slurm (sbatch); the only queue there is so far", 0},
@@ -39,6 +40,8 @@ static const struct argp_option OPTIONS[] = {
      0},
     {"allow-sumo-outputs", FREE_OUTPUTS, NULL, 0,
      "let SUMO write and connect wherever the scenarios say, as 'crashpulse run' with it", 0},
+    {"allow-plugins", ALLOW_PLUGINS, NULL, 0,
+     "load the libraries that the study names, as 'crashpulse run' with it", 0},
     {"dry-run", DRY_RUN, NULL, 0, "write the scripts, submit nothing", 0},
     {0},
 };
@@ -64,6 +67,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case FREE_OUTPUTS:
         a->free_outputs = true;
+        return 0;
+    case ALLOW_PLUGINS:
+        a->allow_plugins = true;
         return 0;
     case SBATCH:
         a->options = argument;
@@ -172,9 +178,10 @@ static cp_status write_scripts(const arguments *a, const paths *p, cp_error *err
              "#SBATCH --ntasks=1 --cpus-per-task=%ld\n"
              "#SBATCH --output='%s/shard_%%a.log'\n"
              "exec '%s' run '%s' --db '%s'/shard_\"$SLURM_ARRAY_TASK_ID\".db \\\n"
-             "    --shard \"$SLURM_ARRAY_TASK_ID\"/%ld --jobs %ld%s\n",
+             "    --shard \"$SLURM_ARRAY_TASK_ID\"/%ld --jobs %ld%s%s\n",
              a->shards, a->jobs, p->folder, p->program, p->study, p->folder, a->shards, a->jobs,
-             a->free_outputs ? " --allow-sumo-outputs" : "");
+             a->free_outputs ? " --allow-sumo-outputs" : "",
+             a->allow_plugins ? " --allow-plugins" : "");
     cp_status status = write_script(p->array, text, error);
     snprintf(
         text, sizeof text,

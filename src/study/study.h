@@ -106,4 +106,9 @@ CP_MUST_CHECK cp_status cp_study_tell_options(const cp_study *study, cp_error *e
 /* By name; NULL when there is none. */
 const cp_study_scenario *cp_study_find_scenario(const cp_study *study, const char *name);
 
+/* A function of the study that comes from a library, for k = 0, 1, ... each file once; NULL: no
+ * more. variant: the first that has it. */
+const cp_library *cp_study_library(const cp_study *study, size_t k,
+                                   const cp_study_variant **variant);
+
 #endif

@@ -5,6 +5,7 @@
 #include "study/control_section.h"
 #include "study/study_schema.h"
 #include "study/fleet_section.h"
+#include "study/library_section.h"
 #include "study/sumo_configuration.h"
 
 #include <ctype.h>
@@ -217,13 +218,17 @@ static cp_status take_controls(const cp_yaml_file *file, cp_control_kind kind,
                                                    &(*settings)[k], error);
         (*settings_count)++;
         if (status == CP_OK)
+            status = cp_library_section_read(file, path, raw[k].name, raw[k].library, raw[k].as,
+                                             raw[k].data, &(*settings)[k], error);
+        if (status == CP_OK)
             status = take_equipment(file, path, &raw[k], &(*settings)[k], error);
         if (status != CP_OK)
             return status;
         // Draws depend on the control's name: the same twice would act in lockstep.
         for (size_t other = 0; other < k; other++)
-            if ((*settings)[other].type == (*settings)[k].type)
-                return cp_yaml_fail(file, error, path, "repeats '%s'", raw[k].name);
+            if (strcmp(cp_control_name(&(*settings)[other]), cp_control_name(&(*settings)[k])) == 0)
+                return cp_yaml_fail(file, error, path, "repeats '%s'",
+                                    cp_control_name(&(*settings)[k]));
     }
     return CP_OK;
 }

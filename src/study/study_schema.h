@@ -16,6 +16,9 @@ typedef struct cp_raw_share {
 
 typedef struct cp_raw_control {
     char *name;
+    char *library; /* of a function from one, */
+    char *as;      /* its name in tables, */
+    char *data;    /* and a file for it */
     cp_raw_share *equipment;
     unsigned equipment_count;
 } cp_raw_control;

@@ -334,6 +334,25 @@ cp_status cp_replication_run(const cp_study *study, const cp_fleet *fleet,
     return status;
 }
 
+// Parameters may be good one by one and contradict each other: the function itself knows. Libraries
+// are not loaded here: what is wrong with them fails their own replications.
+static cp_status try_functions(const cp_study *study, const cp_study_variant *variant,
+                               const cp_traffic *traffic, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < variant->function_count; k++) {
+        cp_controls *controls = NULL;
+        if (variant->functions[k].library != NULL)
+            continue;
+        status = cp_controls_create(&variant->functions[k], 1, study->seed, 1, traffic, &controls,
+                                    error);
+        cp_controls_destroy(controls);
+    }
+    if (status != CP_OK)
+        cp_error_prefix(error, "variant %s: ", variant->name);
+    return status;
+}
+
 cp_status cp_replication_probe(const cp_study *study, const cp_study_scenario *scenario,
                                cp_error *error)
 {
@@ -343,16 +362,8 @@ cp_status cp_replication_probe(const cp_study *study, const cp_study_scenario *s
     if (status == CP_OK)
         status = cp_traffic_step(simulation.traffic, error);
 
-    // Parameters may be good one by one and contradict each other: the controls themselves know.
-    for (size_t k = 0; status == CP_OK && k < study->variant_count; k++) {
-        const cp_study_variant *variant = &study->variants[k];
-        cp_controls *controls = NULL;
-        status = cp_controls_create(variant->functions, variant->function_count, study->seed, 1,
-                                    simulation.traffic, &controls, error);
-        cp_controls_destroy(controls);
-        if (status != CP_OK)
-            cp_error_prefix(error, "variant %s: ", variant->name);
-    }
+    for (size_t k = 0; status == CP_OK && k < study->variant_count; k++)
+        status = try_functions(study, &study->variants[k], simulation.traffic, error);
     cp_probe_outputs_delete(scenario->name);
     cp_simulation_end(&simulation);
 

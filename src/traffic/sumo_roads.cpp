@@ -138,7 +138,8 @@ void read_lane(const cp_sumo_numbers *numbers, const std::string &id, Lanes *all
                          Lane::getWidth(id),
                          numbers->edge(all->edges[number].c_str()),
                          0,
-                         is_inside};
+                         is_inside,
+                         Lane::getMaxSpeed(id)};
 }
 
 } // namespace

@@ -63,7 +63,7 @@ static cp_impact_names names_of(const char *type_of_b)
         .sumocfg_path = "a.sumocfg",
         .sumo_id = {"one", "two"},
         .sumo_type = {"passenger", type_of_b},
-        .type = {{"passenger", "", 4.86, 1.85, 1.5, NAN}, {"truck", "", 7.1, 2.4, 2.4, NAN}},
+        .type = {{"passenger", "", 4.86, 1.85, 1.5, NAN}, {"tram", "", 7.1, 2.4, 2.4, NAN}},
         .at_fault = {true, false}};
 }
 
@@ -224,7 +224,7 @@ static void a_repeated_crash_is_the_known_one(void **state)
     cp_result_rows_destroy(&rows);
 }
 
-// A truck: what happened is kept, no severity of either, and both say why.
+// A tram: what happened is kept, no severity of either, and both say why.
 static void vehicle_without_model_is_no_car(void **state)
 {
     (void)state;
@@ -237,7 +237,7 @@ static void vehicle_without_model_is_no_car(void **state)
     assert_string_equal(car->vehicle_model, "car");
     assert_string_equal(car->chosen_by, "study_default");
     assert_string_equal(truck->vehicle_model, CP_NO_VEHICLE_MODEL);
-    assert_string_equal(truck->no_model_reason, "no shipped model of vClass truck");
+    assert_string_equal(truck->no_model_reason, "no shipped model of vClass tram");
     assert_int_equal(truck->outside, CP_OUTSIDE_NO_MODEL);
     assert_true((car->outside & CP_OUTSIDE_OPPONENT_STRUCTURE) != 0);
     assert_true((car->outside & CP_OUTSIDE_NO_MODEL) == 0);

@@ -87,7 +87,7 @@ typedef struct cp_suite_class {
                                        * on the rear, from its centre of gravity; empty: 0 */
     cp_suite_numbers struck_forces_1; /* times the forces of its side and rear; empty: 1 */
     cp_suite_texts against;           /* "same", shipped names or paths; empty: barrier only */
-    cp_suite_comparison *comparison; /* owned */
+    cp_suite_comparison *comparison;  /* owned */
     size_t comparison_count;
 } cp_suite_class;
 

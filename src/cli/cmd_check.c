@@ -80,6 +80,7 @@ cp_status cmd_check(int argc, char **argv, cp_error *error)
     cp_status status = CP_OK;
     if (a.upgrade) {
         status = cp_store_open(a.input.path, CP_STORE_WRITE, &store, error);
+        cp_store_finish(store);
         cp_store_close(store);
     }
     if (status == CP_OK)

@@ -288,6 +288,25 @@ static size_t tell_outputs(const cp_study_scenario *scenario, const cp_scenario_
     return refused;
 }
 
+// What code the study brings along.
+static void list_libraries(const cp_study *study, cp_format format)
+{
+    const cp_study_variant *variant = NULL;
+    const cp_library *library;
+    size_t count = 0;
+    for (; (library = cp_study_library(study, count, &variant)) != NULL; count++) {
+        if (format != CP_FORMAT_TABLE)
+            continue;
+        printf("%svariant %s loads code of its own: ", count == 0 ? "\n" : "", variant->base);
+        cp_text_print(stdout, library->written, "");
+        printf(", SHA-256 %s\n", library->hash);
+    }
+    if (count > 0)
+        cp_log_warning("the study asks to load code of its own (%zu librar%s): 'crashpulse run' "
+                       "refuses that unless it is given --allow-plugins",
+                       count, count == 1 ? "y" : "ies");
+}
+
 static cp_status list_outputs(const cp_study *study, cp_format format, cp_error *error)
 {
     size_t refused = 0;
@@ -332,6 +351,8 @@ cp_status cmd_plan(int argc, char **argv, cp_error *error)
         print_summary(&p);
     if (status == CP_OK)
         status = list_outputs(&p.study, a.format, error);
+    if (status == CP_OK)
+        list_libraries(&p.study, a.format);
     release(&p);
     if (status == CP_OK && agrees != CP_OK) {
         *error = contradiction;

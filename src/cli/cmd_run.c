@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { TIME_LIMIT = 256, SHARD, NO_CHECK, FREE_OUTPUTS };
+enum { TIME_LIMIT = 256, SHARD, NO_CHECK, FREE_OUTPUTS, ALLOW_PLUGINS };
 
 static const struct argp_option OPTIONS[] = {
     {"db", 'd', "FILE", 0,
@@ -26,6 +26,10 @@ static const struct argp_option OPTIONS[] = {
     {"allow-sumo-outputs", FREE_OUTPUTS, NULL, 0,
      "let SUMO write and connect wherever the scenarios say, not only in the folders of their "
      ".sumocfg ('crashpulse plan' lists what they ask for)",
+     0},
+    {"allow-plugins", ALLOW_PLUGINS, NULL, 0,
+     "load the libraries that the study names: code that may do what you may ('crashpulse plan' "
+     "lists them)",
      0},
     {0},
 };
@@ -68,6 +72,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case FREE_OUTPUTS:
         options->free_outputs = true;
+        return 0;
+    case ALLOW_PLUGINS:
+        options->allow_plugins = true;
         return 0;
     case SHARD:
         parse_shard(argument, options, state);

@@ -2,6 +2,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/file.h"
+#include "core/installation.h"
 #include "core/log.h"
 #include "core/safe_text.h"
 #include "study/study_file.h"
@@ -24,10 +25,11 @@ typedef struct arguments {
     long shards;
     long jobs;           /* worker processes of a task */
     bool free_outputs;   /* SUMO may write and connect where the scenarios say */
+    bool allow_plugins;  /* the study's libraries are loaded */
     const char *options; /* further words for sbatch */
 } arguments;
 
-enum { SLURM = 256, SHARDS, DRY_RUN, SBATCH, FREE_OUTPUTS };
+enum { SLURM = 256, SHARDS, DRY_RUN, SBATCH, FREE_OUTPUTS, ALLOW_PLUGINS };
 
 static const struct argp_option OPTIONS[] = {
     {"slurm", SLURM, NULL, 0, "submit to Slurm (sbatch); the only queue there is so far", 0},
@@ -38,6 +40,8 @@ static const struct argp_option OPTIONS[] = {
      0},
     {"allow-sumo-outputs", FREE_OUTPUTS, NULL, 0,
      "let SUMO write and connect wherever the scenarios say, as 'crashpulse run' with it", 0},
+    {"allow-plugins", ALLOW_PLUGINS, NULL, 0,
+     "load the libraries that the study names, as 'crashpulse run' with it", 0},
     {"dry-run", DRY_RUN, NULL, 0, "write the scripts, submit nothing", 0},
     {0},
 };
@@ -63,6 +67,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case FREE_OUTPUTS:
         a->free_outputs = true;
+        return 0;
+    case ALLOW_PLUGINS:
+        a->allow_plugins = true;
         return 0;
     case SBATCH:
         a->options = argument;
@@ -130,11 +137,9 @@ static cp_status absolute(const char *path, char result[PATH_MAX], cp_error *err
 
 static cp_status find_paths(const arguments *a, paths *p, cp_error *error)
 {
-    ssize_t length = readlink("/proc/self/exe", p->program, PATH_MAX - 1);
-    if (length < 0)
-        return cp_fail(error, CP_IO_FAILED, "/proc/self/exe: %s", strerror(errno));
-    p->program[length] = '\0';
-    cp_status status = absolute(a->input.path, p->study, error);
+    cp_status status = cp_installation_program(p->program, sizeof p->program, error);
+    if (status == CP_OK)
+        status = absolute(a->input.path, p->study, error);
     if (status == CP_OK)
         status = absolute(a->db_path, p->db, error);
     if (status != CP_OK)
@@ -173,9 +178,10 @@ static cp_status write_scripts(const arguments *a, const paths *p, cp_error *err
              "#SBATCH --ntasks=1 --cpus-per-task=%ld\n"
              "#SBATCH --output='%s/shard_%%a.log'\n"
              "exec '%s' run '%s' --db '%s'/shard_\"$SLURM_ARRAY_TASK_ID\".db \\\n"
-             "    --shard \"$SLURM_ARRAY_TASK_ID\"/%ld --jobs %ld%s\n",
+             "    --shard \"$SLURM_ARRAY_TASK_ID\"/%ld --jobs %ld%s%s\n",
              a->shards, a->jobs, p->folder, p->program, p->study, p->folder, a->shards, a->jobs,
-             a->free_outputs ? " --allow-sumo-outputs" : "");
+             a->free_outputs ? " --allow-sumo-outputs" : "",
+             a->allow_plugins ? " --allow-plugins" : "");
     cp_status status = write_script(p->array, text, error);
     snprintf(
         text, sizeof text,

@@ -6,6 +6,7 @@
 #include "cli/pulse_validation.h"
 #include "cli/suite_validation.h"
 #include "core/output_files.h"
+#include "crash/named_vehicle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -83,7 +84,7 @@ static void check(const arguments *a, struct argp_state *state)
         argp_error(state, "--vehicle, --references and --cases go with --suite");
     if (a->suite.path != NULL)
         return;
-    cp_args_need(state, a->input.path != NULL, "which vehicle? VEHICLE.yaml");
+    cp_args_need(state, a->input.path != NULL, "which vehicle? VEHICLE");
     cp_args_need(state, a->reference_path != NULL || a->pulse.path != NULL,
                  "against what? --reference FILE.csv or --pulse PATH");
     if (a->reference_path != NULL && a->pulse.path != NULL)
@@ -152,7 +153,7 @@ static const struct argp_child CHILDREN[] = {
 static const struct argp ARGP = {
     .options = OPTIONS,
     .parser = parse,
-    .args_doc = "VEHICLE.yaml\n--suite FILE.yaml",
+    .args_doc = "VEHICLE\n--suite FILE.yaml",
     .doc = "Hold a vehicle model against reference OLC values: every configuration is simulated "
            "against the barrier of the vehicle file; errors are model minus reference, in g. Or "
            "against the pulse of one test at its speed. Or vehicles against all tests of a suite: "
@@ -295,7 +296,7 @@ cp_status cmd_validate(int argc, char **argv, cp_error *error)
     const char *const inputs[] = {a.input.path, a.reference_path, a.pulse.path};
     cp_status status = cp_output_files_check(&a.curves_path, 1, inputs, 3, error);
     if (status == CP_OK)
-        status = cp_vehicle_model_load(a.input.path, &model, error);
+        status = cp_named_vehicle_load(NULL, a.input.path, &model, error);
     if (status != CP_OK)
         return status;
     return a.pulse.path != NULL

@@ -2,6 +2,8 @@
 #include "core/yaml_file.h"
 
 #include "core/file.h"
+#include "core/yaml_lines.h"
+#include "core/yaml_structure.h"
 
 #include <errno.h>
 #include <math.h>
@@ -108,6 +110,8 @@ cp_status cp_yaml_parse(const char *name, const char *content, size_t size,
         status = cp_file_check_text(name, content, size, error);
     if (status == CP_OK)
         status = cp_yaml_lines_read(name, content, size, &file->lines, &file->line_count, error);
+    if (status == CP_OK)
+        status = cp_yaml_structure_check(file, error);
     if (status == CP_OK)
         status = load_structure(file, content, size, error);
     if (status != CP_OK)

@@ -171,7 +171,7 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
             "INSERT INTO crash_vehicle SELECT ?1, ?2, scenario_id, variant_id, ?4, ?5, ?6, ?7, ?8, "
             "?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, "
             "?26, ?27, ?28, ?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40, ?41, ?42, "
-            "?43, ?44, ?45 FROM replication WHERE id = ?3",
+            "?43, ?44, ?45, ?46, ?47, ?48, ?49, ?50, ?51, ?52 FROM replication WHERE id = ?3",
             &vehicle, error);
     if (status == CP_OK)
         status = cp_statement_prepare(

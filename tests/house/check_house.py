@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The house's own rules: include law, no circles among the files of a room, licence lines, no
-file-scope mutable state, C++ only in bridges, lengths of files, a test for every file. Prints every
+file-scope mutable state, C++ only in bridges, SUMO's bridge behind the traffic, lengths of files, a test for every file. Prints every
 breach as file:line and ends with status 1 if there is one. An exception stands in a list beside
 this file, with its reason; one that is no longer needed is a breach too."""
 import pathlib
@@ -8,7 +8,8 @@ import re
 import sys
 
 LONG, LONGEST = 400, 600  # lines: from the first on a reason is needed, the second is the end
-BRIDGES = ("sumo_bridge.cpp", "sumo_roads.cpp", "optimiser.cpp")
+BRIDGES = ("sumo_bridge.cpp", "sumo_messages.cpp", "sumo_vehicles.cpp", "sumo_road_relation.cpp", "sumo_roads.cpp",
+           "optimiser.cpp")
 
 
 def read_list(path):
@@ -53,6 +54,10 @@ class House:
                 own = re.match(r'\s*#\s*include\s+"(\w+)/', line)
                 if own and own.group(1) not in allowed[room] | {room, "core"}:
                     self.breach(path, number, f"{room} must not include {own.group(1)}")
+                # Whoever asks the bridge itself cannot run on a scripted road.
+                bridge = re.search(r"\bsumo_bridge(_\w+)?\b", line)
+                if bridge and room != "traffic":
+                    self.breach(path, number, f"{bridge.group()} is for traffic alone: ask cp_traffic_*")
                 for header, rooms in libraries.items():
                     if re.match(r"\s*#\s*include\s+" + re.escape(header), line) and room not in rooms:
                         self.breach(path, number, f"{room} must not include {header}")

@@ -5,7 +5,7 @@
 #include "calibrate/suite_struck.h"
 #include "core/file.h"
 #include "core/units.h"
-#include "crash/shipped_vehicle.h"
+#include "crash/named_vehicle.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,18 +28,7 @@ int cp_suite_case_cars(const cp_suite_class *class, const cp_suite_comparison *c
 cp_status cp_suite_vehicle(const char *base, const char *text, cp_vehicle_model *model,
                            cp_error *error)
 {
-    cp_shipped_vehicle shipped;
-    if (cp_shipped_vehicle_find(text, &shipped))
-        return cp_vehicle_model_parse(shipped.name, shipped.yaml, shipped.size, model, error);
-    if (!cp_shipped_vehicle_is_path(text))
-        return cp_fail(error, CP_BAD_INPUT,
-                       "'%s' is no vehicle: allowed are the path of a file, or one of %s", text,
-                       cp_shipped_vehicle_names());
-    char *path = base != NULL ? cp_file_beside(base, text) : strdup(text);
-    cp_status status =
-        path != NULL ? cp_vehicle_model_load(path, model, error) : cp_fail_memory(error, text);
-    free(path);
-    return status;
+    return cp_named_vehicle_load(base, text, model, error);
 }
 
 // ---- making cases ------------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 #ifndef CALIBRATE_SUITE_CASE_H
 #define CALIBRATE_SUITE_CASE_H
 
-#include "calibrate/suite_file.h"
+#include "calibrate/suite.h"
 #include "core/csv_table.h"
 #include "crash/vehicle_model.h"
 

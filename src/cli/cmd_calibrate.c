@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/calibration.h"
+#include "calibrate/fit_file.h"
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "crash/crash_simulation.h"

@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/caveats.h"
+#include "analysis/comparison.h"
+#include "analysis/comparison_store.h"
+#include "analysis/field_comparison.h"
+#include "analysis/grouping.h"
+#include "analysis/network_background.h"
+#include "analysis/quantity.h"
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "cli/comparison_table.h"
 #include "cli/field_output.h"
 #include "core/log.h"
 #include "report/answer.h"
-#include "report/caveats.h"
 #include "report/comparison_json.h"
-#include "report/field_comparison.h"
-#include "report/grouping.h"
-#include "report/network_background.h"
-#include "report/quantity.h"
+#include "report/field_words.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -8,6 +8,7 @@
 #include "study/occasions.h"
 #include "study/plan.h"
 #include "study/scenario_outputs.h"
+#include "study/study_file.h"
 #include "study/type_mapping.h"
 
 #include <stdbool.h>

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/comparison.h"
+#include "analysis/grouping.h"
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/log.h"
 #include "core/output_files.h"
-#include "report/grouping.h"
 #include "report/plot.h"
 
 #include <string.h>

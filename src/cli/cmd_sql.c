@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/query_json.h"
 #include "cli/args.h"
 #include "cli/commands.h"
+#include "core/installation.h"
 #include "core/log.h"
-#include "report/query_json.h"
 #include "store/query.h"
 
 #include <errno.h>
@@ -73,18 +74,14 @@ static cp_status add_row(void *context, const cp_row *row, cp_error *error)
     return CP_OK;
 }
 
-// The extension beside the running executable; "" when it is not there.
+// The extension that belongs to the running executable; "" when it is not there.
 static void find_extension(char path[PATH_MAX])
 {
     static const char NAME[] = "crashpulse_sql.so";
-    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
-    path[length > 0 ? length : 0] = '\0';
-    char *slash = strrchr(path, '/');
-    size_t room = slash != NULL ? PATH_MAX - (size_t)(slash + 1 - path) : 0;
-    if (room > sizeof NAME)
-        memcpy(slash + 1, NAME, sizeof NAME);
-    if (room <= sizeof NAME || access(path, R_OK) != 0) {
-        cp_log_warning("%s is not beside crashpulse: its functions are missing", NAME);
+    cp_error error = {0};
+    if (cp_installation_find(CP_INSTALLED_LIBRARY, NAME, path, PATH_MAX, &error) != CP_OK ||
+        access(path, R_OK) != 0) {
+        cp_log_warning("%s is not where crashpulse is: its functions are missing", NAME);
         path[0] = '\0';
     }
 }

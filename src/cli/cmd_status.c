@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/caveats.h"
+#include "analysis/network_background.h"
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/safe_text.h"
-#include "report/caveats.h"
-#include "report/network_background.h"
 #include "run/owner.h"
 #include "store/query.h"
 

@@ -2,6 +2,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/file.h"
+#include "core/installation.h"
 #include "core/log.h"
 #include "core/safe_text.h"
 #include "study/study_file.h"
@@ -133,11 +134,9 @@ static cp_status absolute(const char *path, char result[PATH_MAX], cp_error *err
 
 static cp_status find_paths(const arguments *a, paths *p, cp_error *error)
 {
-    ssize_t length = readlink("/proc/self/exe", p->program, PATH_MAX - 1);
-    if (length < 0)
-        return cp_fail(error, CP_IO_FAILED, "/proc/self/exe: %s", strerror(errno));
-    p->program[length] = '\0';
-    cp_status status = absolute(a->study_path, p->study, error);
+    cp_status status = cp_installation_program(p->program, sizeof p->program, error);
+    if (status == CP_OK)
+        status = absolute(a->study_path, p->study, error);
     if (status == CP_OK)
         status = absolute(a->db_path, p->db, error);
     if (status != CP_OK)

@@ -6,6 +6,7 @@
 #include "cli/pulse_validation.h"
 #include "cli/suite_validation.h"
 #include "core/output_files.h"
+#include "crash/named_vehicle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -84,7 +85,7 @@ static void check(const arguments *a, struct argp_state *state)
     if (a->suite.path != NULL)
         return;
     if (a->vehicle_path == NULL)
-        argp_error(state, "which vehicle? VEHICLE.yaml is missing");
+        argp_error(state, "which vehicle? VEHICLE is missing");
     if (a->reference_path == NULL && a->pulse.path == NULL)
         argp_error(state, "against what? --reference FILE.csv or --pulse PATH is missing");
     if (a->reference_path != NULL && a->pulse.path != NULL)
@@ -156,7 +157,7 @@ static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}}
 static const struct argp ARGP = {
     .options = OPTIONS,
     .parser = parse,
-    .args_doc = "VEHICLE.yaml\n--suite FILE.yaml",
+    .args_doc = "VEHICLE\n--suite FILE.yaml",
     .doc = "Hold a vehicle model against reference OLC values: every configuration is simulated "
            "against the barrier of the vehicle file; errors are model minus reference, in g. Or "
            "against the pulse of one test at its speed. Or vehicles against all tests of a suite: "
@@ -298,7 +299,7 @@ cp_status cmd_validate(int argc, char **argv, cp_error *error)
     const char *const inputs[] = {a.vehicle_path, a.reference_path, a.pulse.path};
     cp_status status = cp_output_files_check(&a.curves_path, 1, inputs, 3, error);
     if (status == CP_OK)
-        status = cp_vehicle_model_load(a.vehicle_path, &model, error);
+        status = cp_named_vehicle_load(NULL, a.vehicle_path, &model, error);
     if (status != CP_OK)
         return status;
     return a.pulse.path != NULL

@@ -5,7 +5,6 @@
 #include "core/units.h"
 #include "crash/validity.h"
 #include "report/page.h"
-#include "report/page_data.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -217,7 +216,7 @@ static cp_status page_json(const cp_animated_run *run, size_t run_count, json_t 
 static cp_status write_page(const json_t *data, const char *title, const char *path,
                             cp_error *error)
 {
-    char *safe_title = cp_page_escape(title), *json = cp_page_data_text(data);
+    char *safe_title = cp_page_escape(title), *json = cp_page_json_text(data);
     char *notice = cp_page_escape((const char *)cp_page_d3_notice);
     char *page = NULL;
     size_t size = 0;

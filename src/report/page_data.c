@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/page_data.h"
 
+#include "analysis/caveats.h"
+#include "analysis/comparison.h"
+#include "analysis/network_background.h"
+#include "analysis/query_json.h"
+#include "analysis/slice_sample.h"
 #include "core/rng.h"
 #include "core/units.h"
 #include "report/answer.h"
 #include "report/assessment_record.h"
-#include "report/caveats.h"
 #include "report/comparison_json.h"
 #include "report/example_query.h"
 #include "report/field_page.h"
+#include "report/figure_json.h"
 #include "report/gallery.h"
 #include "report/network.h"
-#include "report/network_background.h"
 #include "report/paired_points.h"
-#include "report/query_json.h"
 #include "report/slice_curves.h"
-#include "report/slice_sample.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -393,26 +395,4 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     free(p.chosen);
     free(p.drawn);
     return status;
-}
-
-char *cp_page_data_text(const json_t *page)
-{
-    char *json = json_dumps(page, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(10));
-    if (!json)
-        return NULL;
-    // In JSON these three occur inside strings only, where \u003c means the same.
-    size_t size = 1;
-    for (const char *c = json; *c; c++)
-        size += strchr("<>&", *c) ? 6 : 1;
-    char *safe = malloc(size), *end = safe;
-    for (const char *c = json; safe && *c; c++) {
-        if (strchr("<>&", *c))
-            end += sprintf(end, "\\u%04x", (unsigned)*c);
-        else
-            *end++ = *c;
-    }
-    if (safe)
-        *end = '\0';
-    free(json);
-    return safe;
 }

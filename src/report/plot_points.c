@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/plot_data.h"
 
+#include "analysis/slice_sample.h"
 #include "core/units.h"
-#include "report/slice_sample.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/report.h"
 
+#include "analysis/false_activations.h"
 #include "core/file.h"
-#include "report/false_activations.h"
 #include "report/page.h"
 #include "report/page_data.h"
 
@@ -35,7 +35,7 @@ static cp_status write_page(const cp_study_data *data, const json_t *page_data,
     char *conditions = cp_page_escape(cut_conditions(answer));
     char *title = cp_page_escape(data->name), *safe_answer = cp_page_escape(answer);
     char *notice = cp_page_escape((const char *)cp_page_d3_notice),
-         *json = cp_page_data_text(page_data), *acts = cp_page_data_text(activations);
+         *json = cp_page_json_text(page_data), *acts = cp_page_json_text(activations);
     char *page = NULL;
     size_t size = 0;
     cp_status status;

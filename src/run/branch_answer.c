@@ -34,9 +34,9 @@ static bool send_participants(int to, const cp_participant_rows *rows)
             cp_branch_write(to, rows->function, rows->function_count * sizeof *rows->function));
 }
 
-bool cp_branch_answer_send(int to, const cp_found_contact *first, const cp_sample_row *sample,
-                           size_t sample_count, const cp_found_contact *const *others,
-                           size_t other_count)
+bool cp_branch_answer_send(int to, const cp_traffic *traffic, const cp_found_contact *first,
+                           const cp_sample_row *sample, size_t sample_count,
+                           const cp_found_contact *const *others, size_t other_count)
 {
     answer_head head = {
         .sample_count = sample_count, .other_count = other_count, .has_crash = first != NULL};
@@ -44,8 +44,8 @@ bool cp_branch_answer_send(int to, const cp_found_contact *first, const cp_sampl
         head.found = *first;
     for (int role = 0; first != NULL && role < 2; role++) {
         cp_error error = {0};
-        if (sumo_bridge_type(sumo_bridge_type_id(first->impact.state[role].type), &head.type[role],
-                             &error) != CP_OK)
+        if (cp_traffic_type(traffic, cp_traffic_type_id(traffic, first->impact.state[role].type),
+                            &head.type[role], &error) != CP_OK)
             return false;
     }
     bool sent = cp_branch_write(to, &head, sizeof head);
@@ -54,14 +54,14 @@ bool cp_branch_answer_send(int to, const cp_found_contact *first, const cp_sampl
     if (sent && sample_count > 0)
         sent = cp_branch_write(to, sample, sample_count * sizeof *sample);
     for (int role = 0; sent && first != NULL && role < 2; role++)
-        sent = send_text(to, sumo_bridge_vehicle_id(first->impact.vehicle[role])) &&
-               send_text(to, sumo_bridge_type_id(first->impact.state[role].type)) &&
-               send_text(to, sumo_bridge_lane_id(first->impact.state[role].lane));
+        sent = send_text(to, cp_traffic_vehicle_id(traffic, first->impact.vehicle[role])) &&
+               send_text(to, cp_traffic_type_id(traffic, first->impact.state[role].type)) &&
+               send_text(to, cp_traffic_lane_id(traffic, first->impact.state[role].lane));
     for (size_t k = 0; sent && k < other_count; k++) {
         const cp_impact *impact = &others[k]->impact;
         sent = cp_branch_write(to, &impact->time_s, sizeof impact->time_s) &&
-               send_text(to, sumo_bridge_vehicle_id(impact->vehicle[0])) &&
-               send_text(to, sumo_bridge_vehicle_id(impact->vehicle[1]));
+               send_text(to, cp_traffic_vehicle_id(traffic, impact->vehicle[0])) &&
+               send_text(to, cp_traffic_vehicle_id(traffic, impact->vehicle[1]));
     }
     return sent;
 }

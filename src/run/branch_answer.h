@@ -51,9 +51,9 @@ typedef struct cp_branch_answer {
 
 /* Send the answer. others: the found contacts that are crashes without the two vehicles. False when
  * nobody listens. */
-bool cp_branch_answer_send(int to, const cp_found_contact *first, const cp_sample_row *sample,
-                           size_t sample_count, const cp_found_contact *const *others,
-                           size_t other_count);
+bool cp_branch_answer_send(int to, const cp_traffic *traffic, const cp_found_contact *first,
+                           const cp_sample_row *sample, size_t sample_count,
+                           const cp_found_contact *const *others, size_t other_count);
 
 /* Read one; texts, samples and found.participants point into bytes, which are aligned to 16. False
  * for bytes that are no whole answer. */

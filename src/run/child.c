@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/child.h"
 
+#include "core/installation.h"
 #include "core/progress.h"
 #include "core/scratch.h"
 #include "run/child_environment.h"
@@ -83,20 +84,17 @@ static int spawn(const char *program, const char *const *arguments, cp_child *ch
 
 cp_status cp_child_find_worker(const char *given, char *path, size_t size, cp_error *error)
 {
-    if (given != NULL) {
+    cp_status status = CP_OK;
+    if (given != NULL)
         snprintf(path, size, "%s", given);
-    } else {
-        ssize_t length = readlink("/proc/self/exe", path, size - 1);
-        if (length < 0)
-            return cp_fail(error, CP_IO_FAILED, "/proc/self/exe: %s", strerror(errno));
-        path[length] = '\0';
-        char *name = strrchr(path, '/') + 1;
-        snprintf(name, size - (size_t)(name - path), "%s", WORKER_NAME);
-    }
-    if (access(path, X_OK) != 0)
-        return cp_fail(error, CP_IO_FAILED, "%s: %s; it belongs beside crashpulse", path,
-                       strerror(errno));
-    return CP_OK;
+    else
+        status = cp_installation_find(CP_INSTALLED_WORKER, WORKER_NAME, path, size, error);
+    if (status == CP_OK && access(path, X_OK) != 0)
+        return cp_fail(error, CP_IO_FAILED,
+                       "%s: %s; the worker comes with crashpulse: install it again, or build all "
+                       "of it",
+                       path, strerror(errno));
+    return status;
 }
 
 cp_status cp_child_start(const char *program, const char *const *arguments, cp_child *child,

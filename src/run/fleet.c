@@ -2,6 +2,7 @@
 #include "run/fleet.h"
 
 #include "core/file.h"
+#include "crash/named_vehicle.h"
 #include "crash/shipped_vehicle.h"
 #include "study/scenario_files.h"
 
@@ -49,10 +50,10 @@ static cp_status load_named(const cp_study *study, const cp_study_vehicle *vehic
         return load_file(vehicle->model_path, model, row, error);
     if (cp_shipped_vehicle_find(vehicle->model_name, &shipped))
         return load_shipped(&shipped, model, row, error);
-    return cp_fail(error, CP_BAD_INPUT,
-                   "%s:%zu: vehicles: no vehicle '%s' is shipped; a name must be one of %s, a file "
-                   "has a '/' or a '.' in it",
-                   study->path, vehicle->line, vehicle->model_name, cp_shipped_vehicle_names());
+    cp_status status = cp_named_vehicle_check(vehicle->model_name, error);
+    return status == CP_OK
+               ? status
+               : cp_error_prefix(error, "%s:%zu: vehicles: ", study->path, vehicle->line);
 }
 
 // Room for one more.

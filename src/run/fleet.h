@@ -5,7 +5,7 @@
 #include "crash/vehicle_choice.h"
 #include "crash/vehicle_model.h"
 #include "study/plan.h"
-#include "traffic/sumo_bridge.h"
+#include "traffic/vehicle_state.h"
 
 /* The surrogate models of a study: which car a SUMO vehicle type crashes as. First of these that
  * applies:

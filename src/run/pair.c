@@ -167,8 +167,7 @@ static cp_status conclude_null(const cp_pair *pair, cp_counterfactual_rows *rows
                                    .status = pair->status,
                                    .lead_s = pair->lead_s,
                                    .checkpoint_s = pair->checkpoint_s,
-                                   .variant =
-                                       pair->study->variants[cp_study_baseline(pair->study)].name};
+                                   .variant = pair->treatments->baseline};
     const cp_branch_end *end = &pair->ends[0];
     if (row->status == CP_NULL_REPRODUCED && !end->answered) {
         row->status = CP_NULL_BRANCH_FAILED;
@@ -197,8 +196,8 @@ static size_t count_new(const cp_pair *pair, const cp_branch_answer *answer)
         bool is_new = other.time_s <= end_s;
         for (size_t f = 0; is_new && f < simulation->found_count; f++) {
             const cp_impact *impact = &simulation->found[f].impact;
-            const char *ids[2] = {sumo_bridge_vehicle_id(impact->vehicle[0]),
-                                  sumo_bridge_vehicle_id(impact->vehicle[1])};
+            const char *ids[2] = {cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[0]),
+                                  cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[1])};
             is_new = !(cp_found_is_crash(&simulation->found[f]) &&
                        cp_branch_is_same_pair(ids, other.ids));
         }
@@ -231,12 +230,12 @@ static bool happens_again(const cp_branch_answer *answer, const char *const ids[
 static size_t count_vanished(const cp_pair *pair, const cp_branch_answer *answer)
 {
     const cp_simulation *simulation = pair->simulation;
-    double horizon_s = pair->crash->time_s + pair->study->counterfactual.horizon_s;
+    double horizon_s = pair->crash->time_s + pair->treatments->timing.horizon_s;
     size_t count = 0;
     for (size_t f = 0; f < simulation->found_count; f++) {
         const cp_impact *impact = &simulation->found[f].impact;
-        const char *ids[2] = {sumo_bridge_vehicle_id(impact->vehicle[0]),
-                              sumo_bridge_vehicle_id(impact->vehicle[1])};
+        const char *ids[2] = {cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[0]),
+                              cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[1])};
         count += cp_found_is_crash(&simulation->found[f]) && impact->time_s > pair->checkpoint_s &&
                  impact->time_s <= horizon_s && !involves(pair->ids, ids) &&
                  !happens_again(answer, ids);
@@ -287,7 +286,7 @@ static cp_status conclude_treatment(const cp_pair *pair, size_t k, cp_null_statu
     if (row == NULL)
         return cp_fail_memory(error, "counterfactual");
     *row = (cp_counterfactual_row){.crash = pair->number,
-                                   .variant = cp_branch_treatment(pair->study, k)->name,
+                                   .variant = pair->treatments->treatment[k].name,
                                    .outcome = CP_OUTCOME_INVALID,
                                    .outcome_olc = CP_OUTCOME_INVALID,
                                    .reason = null_status};
@@ -313,7 +312,7 @@ cp_status cp_pair_conclude(const cp_pair *pair, cp_counterfactual_rows *rows, cp
     cp_null_status null_status = CP_NULL_REPRODUCED;
     const char *null_detail = "";
     cp_status status = conclude_null(pair, rows, &null_status, &null_detail, error);
-    for (size_t k = 0; status == CP_OK && k < pair->study->variant_count - 1; k++)
+    for (size_t k = 0; status == CP_OK && k < pair->treatments->count; k++)
         status = conclude_treatment(pair, k, null_status, null_detail, rows, error);
     return status;
 }

@@ -14,6 +14,7 @@
 #include "study/controls_text.h"
 #include "study/occasions.h"
 #include "study/scenario_outputs.h"
+#include "study/study_file.h"
 #include "study/type_mapping.h"
 
 #include <errno.h>

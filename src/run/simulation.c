@@ -3,8 +3,8 @@
 
 #include "impact/footprint.h"
 #include "run/participants.h"
-#include "run/sumo_words.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 const char CP_FOUND_CRASH[] = "crash";
@@ -18,65 +18,62 @@ bool cp_found_is_crash(const cp_found_contact *found)
 
 // ---- beginning and end ---------------------------------------------------------------------
 
-static cp_status create_controls(const cp_study *study, const cp_study_scenario *scenario,
-                                 const cp_study_variant *variant, uint64_t seed,
-                                 const cp_traffic *traffic, cp_controls **controls, cp_error *error)
+// Driver errors first, then the functions that are to make up for them.
+static cp_status create_controls(const cp_simulation_settings *settings, cp_simulation *simulation,
+                                 cp_error *error)
 {
-    // Driver errors first, then the functions that are to make up for them.
-    size_t count = scenario->driver_error_count + variant->function_count;
-    cp_control_settings *settings = calloc(count + 1, sizeof *settings);
-    if (settings == NULL)
+    size_t count = settings->driver_count + settings->function_count;
+    cp_control_settings *all = calloc(count + 1, sizeof *all);
+    if (all == NULL)
         return cp_fail_memory(error, "controls");
     for (size_t k = 0; k < count; k++)
-        settings[k] = k < scenario->driver_error_count
-                          ? scenario->driver_errors[k]
-                          : variant->functions[k - scenario->driver_error_count];
-    cp_status status =
-        cp_controls_create(settings, count, study->seed, seed, traffic, controls, error);
-    free(settings);
+        all[k] = k < settings->driver_count ? settings->drivers[k]
+                                            : settings->functions[k - settings->driver_count];
+    cp_status status = cp_controls_create(all, count, settings->study_seed, settings->seed,
+                                          simulation->traffic, &simulation->controls, error);
+    free(all);
     return status;
 }
 
-// Drivers and functions ask where on the road cars are; so do the treatments of branches.
-static bool needs_places(const cp_study *study, const cp_study_scenario *scenario,
-                         const cp_study_variant *variant)
+cp_status cp_simulation_begin_on(const cp_simulation_settings *settings, cp_traffic *traffic,
+                                 cp_simulation *simulation, cp_error *error)
 {
-    bool is_treated = study->design == CP_DESIGN_COUNTERFACTUAL;
-    return scenario->driver_error_count > 0 || variant->function_count > 0 || is_treated;
-}
-
-cp_status cp_simulation_begin(const cp_study *study, const cp_study_scenario *scenario,
-                              const cp_study_variant *variant, uint64_t seed,
-                              cp_simulation *simulation, cp_error *error)
-{
-    cp_sumo_words words;
-    *simulation = (cp_simulation){.sumocfg_path = scenario->sumocfg_path};
-    cp_status status = cp_sumo_words_create(scenario, variant, seed, study->stay_s, &words, error);
-    if (status != CP_OK)
-        return status;
-    cp_traffic_options options = {.sumocfg = scenario->sumocfg_path,
-                                  .seed = seed,
-                                  .step_length_s = study->step_length_s,
-                                  .options = (const char *const *)words.word,
-                                  .option_count = words.count};
-    status = cp_traffic_create(&options, &simulation->traffic, error);
-    cp_sumo_words_destroy(&words);
-    if (status == CP_OK)
-        cp_traffic_read_places(simulation->traffic, needs_places(study, scenario, variant));
-    if (status == CP_OK)
-        status = create_controls(study, scenario, variant, seed, simulation->traffic,
-                                 &simulation->controls, error);
+    *simulation = (cp_simulation){.sumocfg_path = settings->sumo.sumocfg_path, .traffic = traffic};
+    // Drivers and functions ask where on the road cars are; so do the treatments of branches.
+    cp_traffic_read_places(traffic, settings->driver_count > 0 || settings->function_count > 0 ||
+                                        settings->is_treated);
+    cp_status status = create_controls(settings, simulation, error);
     if (status == CP_OK)
         status = cp_detector_create(&simulation->detector, error);
-    if (status == CP_OK && study->history_s > 0.0)
-        status =
-            cp_history_create(study->history_s, study->step_length_s, &simulation->history, error);
+    if (status == CP_OK && settings->history_s > 0.0)
+        status = cp_history_create(settings->history_s, settings->step_length_s,
+                                   &simulation->history, error);
     if (status != CP_OK)
         return status;
-    simulation->counted_from_s = cp_traffic_time_s(simulation->traffic) + study->warmup_s;
-    simulation->warmup_steps = llround(study->warmup_s / study->step_length_s);
-    simulation->stay_s = study->stay_s;
+    simulation->counted_from_s = cp_traffic_time_s(traffic) + settings->warmup_s;
+    simulation->warmup_steps = llround(settings->warmup_s / settings->step_length_s);
+    simulation->stay_s = settings->stay_s;
     return CP_OK;
+}
+
+cp_status cp_simulation_begin(const cp_simulation_settings *settings, cp_simulation *simulation,
+                              cp_error *error)
+{
+    cp_sumo_words words;
+    cp_traffic *traffic = NULL;
+    *simulation = (cp_simulation){0};
+    cp_status status =
+        cp_sumo_words_create(&settings->sumo, settings->seed, settings->stay_s, &words, error);
+    if (status != CP_OK)
+        return status;
+    cp_traffic_options options = {.sumocfg = settings->sumo.sumocfg_path,
+                                  .seed = settings->seed,
+                                  .step_length_s = settings->step_length_s,
+                                  .options = (const char *const *)words.word,
+                                  .option_count = words.count};
+    status = cp_traffic_create(&options, &traffic, error);
+    cp_sumo_words_destroy(&words);
+    return status == CP_OK ? cp_simulation_begin_on(settings, traffic, simulation, error) : status;
 }
 
 void cp_simulation_end_traffic(cp_simulation *simulation)
@@ -258,7 +255,7 @@ static cp_status take_sumo_collisions(cp_simulation *simulation, cp_error *error
 {
     const cp_sumo_collision *collisions = NULL;
     size_t count = 0;
-    cp_status status = sumo_bridge_collisions(&collisions, &count, error);
+    cp_status status = cp_traffic_collisions(simulation->traffic, &collisions, &count, error);
     for (size_t k = 0; status == CP_OK && k < count; k++)
         status = cp_cross_check_add_report(&simulation->check, collisions[k].collider,
                                            collisions[k].victim, collisions[k].type,

@@ -2,7 +2,10 @@
 #ifndef STORE_COUNTERFACTUAL_ROWS_H
 #define STORE_COUNTERFACTUAL_ROWS_H
 
-#include "store/result_rows.h"
+#include "store/crash_rows.h"
+#include "store/store.h"
+
+#include <stdint.h>
 
 /* What became of each crash of a baseline replication under each treatment, as rows of the
  * database. Columns and outcomes are described in db/schema/002_counterfactual.sql. */

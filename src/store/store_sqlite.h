@@ -10,6 +10,13 @@
 
 /* SQLite under the store; for the files of this folder only. */
 
+struct cp_store {
+    char *path;
+    char *file_name; /* the same as SQLite takes it: ':memory:' and 'file:x' are names too */
+    sqlite3 *handle;
+    int in_transaction;
+};
+
 sqlite3 *cp_store_sqlite(cp_store *store);
 
 /* SQLite's last error as a status and message "path: what: SQLite's words". */

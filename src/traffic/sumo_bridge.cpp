@@ -56,11 +56,11 @@ class Names
 struct Driving {
     uint32_t vehicle;
     const std::string *id;
-    uint32_t type = SUMO_BRIDGE_NONE; // looked up when it is first seen: it stays the same
-    uint32_t lane = SUMO_BRIDGE_NONE; // as last seen
-    bool stands = false;              // where it was a step before
-    double z_m = 0.0;                 // as last seen
-    double yaw_rad = 0.0;             // likewise
+    uint32_t type = CP_NO_NUMBER; // looked up when it is first seen: it stays the same
+    uint32_t lane = CP_NO_NUMBER; // as last seen
+    bool stands = false;          // where it was a step before
+    double z_m = 0.0;             // as last seen
+    double yaw_rad = 0.0;         // likewise
     cp_straight_run run = {};
 };
 
@@ -334,7 +334,7 @@ double yaw_of_sumo_angle(double angle_deg)
 void read_place(const std::string &id, uint32_t *last, cp_vehicle_state *state)
 {
     const std::string lane = libsumo::Vehicle::getLaneID(id);
-    if (*last == SUMO_BRIDGE_NONE || *bridge->lanes.name(*last) != lane)
+    if (*last == CP_NO_NUMBER || *bridge->lanes.name(*last) != lane)
         *last = bridge->lanes.number(lane);
     state->lane = *last;
     state->is_in_junction = !lane.empty() && lane[0] == ':';
@@ -383,7 +383,7 @@ Where read_vehicle(Driving *driving, cp_vehicle_state *state)
         return Where::ELSEWHERE;
     }
     *state = cp_vehicle_state{};
-    if (driving->type == SUMO_BRIDGE_NONE)
+    if (driving->type == CP_NO_NUMBER)
         driving->type = number_type(Vehicle::getTypeID(id));
     state->vehicle = driving->vehicle;
     state->type = driving->type;
@@ -594,7 +594,7 @@ void sumo_bridge_read_places(bool wanted)
 cp_status sumo_bridge_place(cp_vehicle_state *state, cp_error *error)
 {
     return command_vehicle("place", state->vehicle, error, [=](const std::string &id) {
-        uint32_t last = SUMO_BRIDGE_NONE;
+        uint32_t last = CP_NO_NUMBER;
         read_place(id, &last, state);
     });
 }
@@ -849,7 +849,7 @@ cp_status sumo_bridge_speed_factor(uint32_t vehicle, double *factor_1, cp_error 
 
 cp_status sumo_bridge_next_light(uint32_t vehicle, cp_next_light *light, cp_error *error)
 {
-    *light = {HUGE_VAL, SUMO_BRIDGE_NONE, false};
+    *light = {HUGE_VAL, CP_NO_NUMBER, false};
     return command_vehicle("next traffic light", vehicle, error, [=](const std::string &id) {
         const auto lights = libsumo::Vehicle::getNextTLS(id);
         if (!lights.empty())

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The house's own rules: include law, licence lines, no file-scope mutable state, C++ only in
-bridges. Prints every breach as file:line and ends with status 1 if there is one."""
+bridges, SUMO's bridge behind the traffic (cp_traffic_*). Prints every breach as file:line and ends with status 1 if there is one."""
 import pathlib
 import re
 import sys
@@ -31,6 +31,10 @@ for path in sorted(p for suffix in ("*.c", "*.h", "*.cpp") for p in (source / "s
         own = re.match(r'\s*#\s*include\s+"(\w+)/', line)
         if own and own.group(1) not in allowed[room] | {room, "core"}:
             breaches.append(f"{here}:{number}: {room} must not include {own.group(1)}")
+        # Whoever asks the bridge itself cannot run on a scripted road.
+        bridge = re.search(r"\bsumo_bridge(_\w+)?\b", line)
+        if bridge and room != "traffic":
+            breaches.append(f"{here}:{number}: {bridge.group()} is for traffic alone: ask cp_traffic_*")
         for header, rooms in libraries.items():
             if re.match(r"\s*#\s*include\s+" + re.escape(header), line) and room not in rooms:
                 breaches.append(f"{here}:{number}: {room} must not include {header}")

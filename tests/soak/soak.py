@@ -48,7 +48,7 @@ Sample = collections.namedtuple("Sample", "time_s vehicles resident_mb anonymous
 
 
 def write_study(folder):
-    town = arguments.source / "sumo_scenarios" / "town"
+    town = arguments.build / "sumo_scenarios" / "town"
     text = (town / "study.yaml").read_text()
     every_s = max(arguments.step, arguments.hours * 3600 / 20000)
     scenarios = text[text.index("scenarios:"):text.index("variants:")].replace(

@@ -17,6 +17,7 @@ typedef struct command {
 
 static const command COMMAND[] = {
     {"run", cmd_run, "simulate a study: traffic, crashes, pulses, into a database"},
+    {"matrix", cmd_matrix, "run a function through a matrix of two-car encounters"},
     {"plan", cmd_plan, "show what a study would run"},
     {"background", cmd_background, "what contacts a network makes without driver errors"},
     {"assess", cmd_assess, "put ready collisions through the surrogate"},

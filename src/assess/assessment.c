@@ -88,14 +88,15 @@ static cp_status gather_vehicles(cp_assessment *self, cp_error *error)
 }
 
 // Rows that could not be read count as those that could not be assessed.
-static cp_status assess_list(cp_assessment *self, cp_assessment_keep keep, cp_error *error)
+static cp_status assess_list(cp_assessment *self, const cp_crash_options *options,
+                             cp_assessment_keep keep, cp_error *error)
 {
     const cp_configuration_list *list = &self->configurations;
     for (size_t k = 0; k < list->bad_count; k++)
         cp_log_warning("%s; left out", list->bad[k]);
     cp_status status =
-        cp_assess_configurations(list, self->request.configurations_path, &self->fleet, keep,
-                                 self->request.strict, &self->results, &self->count, error);
+        cp_assess_configurations(list, self->request.configurations_path, &self->fleet, options,
+                                 keep, self->request.strict, &self->results, &self->count, error);
     self->count.listed += list->bad_count;
     self->count.bad += list->bad_count;
     return status;
@@ -114,11 +115,11 @@ static cp_status assess(cp_assessment *self, cp_error *error)
     if (self->results.crash_options == NULL)
         status = cp_fail_memory(error, "crash options");
     else if (a->configurations_path != NULL)
-        status = assess_list(self, keep, error);
+        status = assess_list(self, &options, keep, error);
     else
         status = cp_assess_collisions(&self->collisions, a->collisions_path, &self->record,
-                                      &self->types, &self->fleet, keep, a->strict, &self->results,
-                                      &self->count, error);
+                                      &self->types, &self->fleet, &options, keep, a->strict,
+                                      &self->results, &self->count, error);
     cp_crash_library_end();
     self->results.wall_time_s = cp_clock_s() - started_s;
     return status;

@@ -18,6 +18,7 @@ typedef struct collision_view {
     const cp_listed_collision *listed;
     const char *list_path;
     const cp_fleet *fleet;
+    const cp_crash_record_settings *how; /* crashes are simulated */
     const cp_fcd_record *record;
     double step_length_s;   /* of the record */
     double sumo_step_s;     /* SUMO's own, where it is told to be shorter */
@@ -176,9 +177,8 @@ static cp_status add_crash(const collision_view *view, const cp_impact *impact,
             names.lane[role] = view->record->lanes[impact->state[role].lane];
     }
     cp_crash_row *row = cp_result_rows_add_crash(results);
-    return row != NULL
-               ? cp_crash_record_fill(impact, &names, view->fleet, CP_RECORD_ALL, row, error)
-               : cp_fail_memory(error, "crash");
+    return row != NULL ? cp_crash_record_fill(impact, &names, view->fleet, view->how, row, error)
+                       : cp_fail_memory(error, "crash");
 }
 
 static cp_status add_contact(const collision_view *view, const cp_impact *impact,
@@ -329,9 +329,11 @@ static double sumo_step_of(const cp_collision_list *list, const cp_fcd_record *r
 
 cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_path,
                                cp_fcd_record *record, const cp_vtypes *types, const cp_fleet *fleet,
-                               cp_assessment_keep keep, bool strict, cp_result_rows *results,
-                               cp_assessment_count *count, cp_error *error)
+                               const cp_crash_options *crash_options, cp_assessment_keep keep,
+                               bool strict, cp_result_rows *results, cp_assessment_count *count,
+                               cp_error *error)
 {
+    const cp_crash_record_settings how = {crash_options, CP_RECORD_ALL};
     *count = (cp_assessment_count){.listed = list->count};
     if (list->with_themselves > 0)
         cp_log_warning("%s: %zu rows in which a vehicle collides with itself are passed over",
@@ -341,6 +343,7 @@ cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_p
         collision_view view = {.listed = &list->collision[k],
                                .list_path = list_path,
                                .fleet = fleet,
+                               .how = &how,
                                .record = record,
                                .step_length_s = record->step_length_s,
                                .sumo_step_s = sumo_step_of(list, record)};

@@ -3,6 +3,7 @@
 #define ASSESS_COLLISIONS_H
 
 #include "assess/listed.h"
+#include "crash/crash_simulation.h"
 #include "exchange/sumo_fcd.h"
 #include "exchange/sumo_types.h"
 #include "run/fleet.h"
@@ -17,8 +18,10 @@
  * record; CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_assess_collisions(const cp_collision_list *list, const char *list_path,
                                              cp_fcd_record *record, const cp_vtypes *types,
-                                             const cp_fleet *fleet, cp_assessment_keep keep,
-                                             bool strict, cp_result_rows *results,
-                                             cp_assessment_count *count, cp_error *error);
+                                             const cp_fleet *fleet,
+                                             const cp_crash_options *crash_options,
+                                             cp_assessment_keep keep, bool strict,
+                                             cp_result_rows *results, cp_assessment_count *count,
+                                             cp_error *error);
 
 #endif

@@ -145,8 +145,8 @@ static cp_status choose_listed(const cp_listed_configuration *row, int v, const 
 }
 
 static cp_status assess_row(const cp_configuration_list *list, size_t number, const char *list_path,
-                            const cp_fleet *fleet, cp_result_rows *results,
-                            cp_assessment_count *count, cp_error *error)
+                            const cp_fleet *fleet, const cp_crash_options *crash_options,
+                            cp_result_rows *results, cp_assessment_count *count, cp_error *error)
 {
     const cp_listed_configuration *row = &list->row[number];
     const char *type[2];
@@ -186,15 +186,16 @@ static cp_status assess_row(const cp_configuration_list *list, size_t number, co
         count->filtered++;
         return CP_OK;
     }
+    const cp_crash_record_settings how = {crash_options, CP_RECORD_ALL};
     cp_crash_row *crash = cp_result_rows_add_crash(results);
-    return crash != NULL ? cp_crash_record_facts(&facts, &names, cars, CP_RECORD_ALL, crash, error)
+    return crash != NULL ? cp_crash_record_facts(&facts, &names, cars, &how, crash, error)
                          : cp_fail_memory(error, "crash");
 }
 
 cp_status cp_assess_configurations(const cp_configuration_list *list, const char *list_path,
-                                   const cp_fleet *fleet, cp_assessment_keep keep, bool strict,
-                                   cp_result_rows *results, cp_assessment_count *count,
-                                   cp_error *error)
+                                   const cp_fleet *fleet, const cp_crash_options *crash_options,
+                                   cp_assessment_keep keep, bool strict, cp_result_rows *results,
+                                   cp_assessment_count *count, cp_error *error)
 {
     cp_error first = {0};
     *count = (cp_assessment_count){.listed = list->count};
@@ -202,7 +203,7 @@ cp_status cp_assess_configurations(const cp_configuration_list *list, const char
     for (size_t k = 0; status == CP_OK && k < list->count; k++) {
         cp_error reason = {0};
         size_t before = results->crash_count;
-        status = assess_row(list, k, list_path, fleet, results, count, &reason);
+        status = assess_row(list, k, list_path, fleet, crash_options, results, count, &reason);
         if (keep == CP_KEEP_NO_PULSES)
             cp_listed_drop_pulses(results);
         if (status == CP_OK)

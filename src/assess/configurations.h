@@ -3,6 +3,7 @@
 #define ASSESS_CONFIGURATIONS_H
 
 #include "assess/listed.h"
+#include "crash/crash_simulation.h"
 #include "exchange/configurations_csv.h"
 #include "run/fleet.h"
 
@@ -12,6 +13,7 @@
  * CP_BAD_INPUT when not one row is right; CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_assess_configurations(const cp_configuration_list *list,
                                                  const char *list_path, const cp_fleet *fleet,
+                                                 const cp_crash_options *crash_options,
                                                  cp_assessment_keep keep, bool strict,
                                                  cp_result_rows *results,
                                                  cp_assessment_count *count, cp_error *error);

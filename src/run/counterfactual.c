@@ -297,6 +297,7 @@ cp_status cp_counterfactual_step(cp_counterfactual *self, cp_error *error)
 // ---- outcomes ------------------------------------------------------------------------------
 
 cp_status cp_counterfactual_conclude(cp_counterfactual *self, const cp_fleet *fleet,
+                                     const cp_crash_options *crash_options,
                                      const cp_crash_row *crashes, size_t count,
                                      cp_counterfactual_rows *rows, cp_error *error)
 {
@@ -311,6 +312,7 @@ cp_status cp_counterfactual_conclude(cp_counterfactual *self, const cp_fleet *fl
         cp_pair pair = {.treatments = self->world.treatments,
                         .simulation = simulation,
                         .fleet = fleet,
+                        .crash_options = crash_options,
                         .number = number,
                         .found = record->found,
                         .crash = &crashes[number],

@@ -2,6 +2,7 @@
 #ifndef RUN_COUNTERFACTUAL_H
 #define RUN_COUNTERFACTUAL_H
 
+#include "crash/crash_simulation.h"
 #include "run/fleet.h"
 #include "run/simulation.h"
 #include "run/treatment.h"
@@ -33,6 +34,7 @@ CP_MUST_CHECK cp_status cp_counterfactual_step(cp_counterfactual *counterfactual
  * treated crash. crashes: the counted crashes of the simulation, in order. */
 CP_MUST_CHECK cp_status cp_counterfactual_conclude(cp_counterfactual *counterfactual,
                                                    const cp_fleet *fleet,
+                                                   const cp_crash_options *crash_options,
                                                    const cp_crash_row *crashes, size_t count,
                                                    cp_counterfactual_rows *rows, cp_error *error);
 

@@ -133,12 +133,11 @@ static cp_status keep_pulse(const cp_pulse *raw, cp_crash_vehicle_row *vehicle, 
 
 // Run the surrogate and take over what it says of both cars.
 static cp_status simulate(const cp_stand_in cars[2], const cp_crash_configuration *configuration,
-                          cp_crash_row *row, cp_error *error)
+                          const cp_crash_options *options, cp_crash_row *row, cp_error *error)
 {
-    cp_crash_options options = cp_crash_options_default();
     cp_crash_result result = {0};
     cp_status status =
-        cp_crash_simulate(&cars[0].model, &cars[1].model, configuration, &options, &result, error);
+        cp_crash_simulate(&cars[0].model, &cars[1].model, configuration, options, &result, error);
     for (int role = 0; status == CP_OK && role < 2; role++)
         row->vehicle[role].outside |= cp_validity_of_meeting(result.touched, result.shift_m);
     if (status == CP_OK && !result.touched)
@@ -165,8 +164,9 @@ static cp_status simulate(const cp_stand_in cars[2], const cp_crash_configuratio
 // OLC by one parameter set of the ensembles, for both cars; a car without an ensemble stays as it
 // is.
 static cp_status simulate_member(const cp_stand_in cars[2],
-                                 const cp_crash_configuration *configuration, size_t number,
-                                 cp_crash_row *row, cp_error *error)
+                                 const cp_crash_configuration *configuration,
+                                 const cp_crash_options *of_crash, size_t number, cp_crash_row *row,
+                                 cp_error *error)
 {
     cp_vehicle_model model[2];
     for (int role = 0; role < 2; role++) {
@@ -174,7 +174,7 @@ static cp_status simulate_member(const cp_stand_in cars[2],
         model[role] =
             own->member_count > 0 ? cp_vehicle_model_member(own, number % own->member_count) : *own;
     }
-    cp_crash_options options = cp_crash_options_default();
+    cp_crash_options options = *of_crash;
     options.until_olc = true;
     cp_crash_result result = {0};
     cp_error failure = {0};
@@ -194,7 +194,8 @@ static cp_status simulate_member(const cp_stand_in cars[2],
 
 // What the fits of the two models leave open: OLC of frontally struck cars by every parameter set.
 static cp_status simulate_ensemble(const cp_stand_in cars[2],
-                                   const cp_crash_configuration *configuration, cp_crash_row *row,
+                                   const cp_crash_configuration *configuration,
+                                   const cp_crash_options *options, cp_crash_row *row,
                                    cp_error *error)
 {
     size_t count = 0;
@@ -206,7 +207,7 @@ static cp_status simulate_ensemble(const cp_stand_in cars[2],
     }
     cp_status status = CP_OK;
     for (size_t k = 0; status == CP_OK && k < count; k++)
-        status = simulate_member(cars, configuration, k, row, error);
+        status = simulate_member(cars, configuration, options, k, row, error);
     for (int role = 0; status == CP_OK && role < 2; role++)
         row->vehicle[role].olc_sd_g =
             cp_olc_sd(row->vehicle[role].member, row->vehicle[role].member_count);
@@ -228,19 +229,19 @@ static void drop_sign_of_zero(cp_body_state *body)
 static cp_status simulate_if_possible(const cp_crash_facts *facts, const cp_impact_names *names,
                                       const cp_stand_in cars[2],
                                       const cp_crash_configuration *configuration,
-                                      cp_crash_record_extent extent, cp_crash_row *row,
+                                      const cp_crash_record_settings *settings, cp_crash_row *row,
                                       cp_error *error)
 {
     cp_error failure = {0};
     if (cars[0].choice.model == NULL || cars[1].choice.model == NULL)
         return CP_OK;
-    cp_status status = simulate(cars, configuration, row, &failure);
+    cp_status status = simulate(cars, configuration, settings->options, row, &failure);
     if (status == CP_NO_MEMORY)
         return cp_fail_memory(error, "crash simulation");
-    if (status == CP_OK && extent == CP_RECORD_PULSE)
+    if (status == CP_OK && settings->extent == CP_RECORD_PULSE)
         return CP_OK;
     if (status == CP_OK)
-        return simulate_ensemble(cars, configuration, row, error);
+        return simulate_ensemble(cars, configuration, settings->options, row, error);
     cp_log_warning("crash of %s and %s at %.2f s cannot be simulated: %s", names->sumo_id[0],
                    names->sumo_id[1], facts->time_s, failure.text);
     for (int role = 0; role < 2; role++) {
@@ -251,7 +252,7 @@ static cp_status simulate_if_possible(const cp_crash_facts *facts, const cp_impa
 }
 
 cp_status cp_crash_record_facts(const cp_crash_facts *facts, const cp_impact_names *names,
-                                const cp_stand_in cars[2], cp_crash_record_extent extent,
+                                const cp_stand_in cars[2], const cp_crash_record_settings *settings,
                                 cp_crash_row *row, cp_error *error)
 {
     cp_crash_configuration configuration = facts->configuration;
@@ -267,7 +268,7 @@ cp_status cp_crash_record_facts(const cp_crash_facts *facts, const cp_impact_nam
     for (int role = 0; status == CP_OK && role < 2; role++)
         status = fill_vehicle(facts, names, cars, &configuration, role, row, error);
     if (status == CP_OK)
-        status = simulate_if_possible(facts, names, cars, &configuration, extent, row, error);
+        status = simulate_if_possible(facts, names, cars, &configuration, settings, row, error);
     if (status != CP_OK)
         return status;
 
@@ -285,7 +286,7 @@ cp_status cp_crash_record_facts(const cp_crash_facts *facts, const cp_impact_nam
 }
 
 cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *names,
-                               const cp_fleet *fleet, cp_crash_record_extent extent,
+                               const cp_fleet *fleet, const cp_crash_record_settings *settings,
                                cp_crash_row *row, cp_error *error)
 {
     cp_stand_in cars[2] = {0};
@@ -303,7 +304,7 @@ cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *n
         facts.length_m[role] = impact->state[role].length_m;
         facts.width_m[role] = impact->state[role].width_m;
     }
-    return cp_crash_record_facts(&facts, names, cars, extent, row, error);
+    return cp_crash_record_facts(&facts, names, cars, settings, row, error);
 }
 
 cp_status cp_crash_record_repeat(const cp_crash_row *known, const cp_impact_names *names,

@@ -2,6 +2,7 @@
 #ifndef RUN_CRASH_RECORD_H
 #define RUN_CRASH_RECORD_H
 
+#include "crash/crash_simulation.h"
 #include "crash/drawn_car.h"
 #include "impact/impact.h"
 #include "run/fleet.h"
@@ -44,20 +45,28 @@ typedef enum cp_crash_record_extent {
     CP_RECORD_PULSE /* not the parameter sets of the vehicle models' ensembles */
 } cp_crash_record_extent;
 
+/* How a crash is simulated. options: of the surrogate, set once where a run begins and stored with
+ * its results; borrowed. */
+typedef struct cp_crash_record_settings {
+    const cp_crash_options *options;
+    cp_crash_record_extent extent;
+} cp_crash_record_settings;
+
 /* Fill row, zeroed before, and simulate; as cp_crash_record_fill, of whose names it takes no types.
  */
 CP_MUST_CHECK cp_status cp_crash_record_facts(const cp_crash_facts *facts,
                                               const cp_impact_names *names,
                                               const cp_stand_in cars[2],
-                                              cp_crash_record_extent extent, cp_crash_row *row,
-                                              cp_error *error);
+                                              const cp_crash_record_settings *settings,
+                                              cp_crash_row *row, cp_error *error);
 
 /* Fill row, zeroed before; what it owns is freed by cp_result_rows_destroy. A crash the surrogate
  * cannot simulate, or with a vehicle that has no model, is kept, with OLC status simulation_failed,
  * and logged. Models cover SUMO's rectangles (cp_vehicle_model_cover). Errors: CP_NO_MEMORY;
  * CP_BAD_INPUT for a type that names an unknown model. */
 CP_MUST_CHECK cp_status cp_crash_record_fill(const cp_impact *impact, const cp_impact_names *names,
-                                             const cp_fleet *fleet, cp_crash_record_extent extent,
+                                             const cp_fleet *fleet,
+                                             const cp_crash_record_settings *settings,
                                              cp_crash_row *row, cp_error *error);
 
 /* Fill row, zeroed before, with what is known of the same crash: same vehicles and types, same

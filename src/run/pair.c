@@ -87,9 +87,10 @@ static cp_status fill_crash(const cp_pair *pair, const cp_branch_answer *answer,
         names.at_fault[role] = answer->found.car[role].at_fault;
         names.had_crashed[role] = answer->found.car[role].had_crashed;
     }
+    const cp_crash_record_settings settings = {pair->crash_options, extent};
     cp_status status = known != NULL ? cp_crash_record_repeat(known, &names, row, error)
                                      : cp_crash_record_fill(&answer->found.impact, &names,
-                                                            pair->fleet, extent, row, error);
+                                                            pair->fleet, &settings, row, error);
     return status == CP_OK ? cp_participant_rows_copy(&answer->found.participants,
                                                       answer->is_swapped, &row->participants, error)
                            : status;

@@ -2,6 +2,7 @@
 #ifndef RUN_PAIR_H
 #define RUN_PAIR_H
 
+#include "crash/crash_simulation.h"
 #include "run/checkpoint.h"
 #include "run/fleet.h"
 #include "run/simulation.h"
@@ -19,6 +20,7 @@ typedef struct cp_pair {
     const cp_treatments *treatments;
     const cp_simulation *simulation; /* of the baseline */
     const cp_fleet *fleet;
+    const cp_crash_options *crash_options;
     size_t number;             /* of the crash among those that count */
     size_t found;              /* index of its contact in the simulation */
     const cp_crash_row *crash; /* as stored */

@@ -25,6 +25,7 @@ typedef struct named_crash {
 typedef struct replication_run {
     const cp_study *study;
     const cp_fleet *fleet;
+    const cp_crash_options *crash_options;
     const cp_study_scenario *scenario;
     cp_simulation simulation;
     cp_treatment *treatment; /* of the counterfactual design; owned */
@@ -140,8 +141,9 @@ static cp_status record_crash(replication_run *run, const named_crash *named, cp
     cp_crash_row *row = cp_result_rows_add_crash(run->results);
     if (row == NULL)
         return cp_fail_memory(error, "crash");
+    const cp_crash_record_settings settings = {run->crash_options, CP_RECORD_ALL};
     cp_status status = cp_crash_record_fill(&named->found->impact, &named->names, run->fleet,
-                                            CP_RECORD_ALL, row, error);
+                                            &settings, row, error);
     row->follows = number_of(simulation, named->found->follows);
     if (status == CP_OK)
         status =
@@ -192,8 +194,9 @@ static cp_status record_counterfactual(replication_run *run, cp_error *error)
     results->counterfactual = calloc(1, sizeof *results->counterfactual);
     if (results->counterfactual == NULL)
         return cp_fail_memory(error, "counterfactual pairs");
-    return cp_counterfactual_conclude(run->counterfactual, run->fleet, results->crash,
-                                      results->crash_count, results->counterfactual, error);
+    return cp_counterfactual_conclude(run->counterfactual, run->fleet, run->crash_options,
+                                      results->crash, results->crash_count, results->counterfactual,
+                                      error);
 }
 
 // ---- what is left to say at the end --------------------------------------------------------
@@ -295,12 +298,16 @@ static cp_status begin_counterfactual(replication_run *run, uint64_t seed, cp_er
 // ---- public --------------------------------------------------------------------------------
 
 cp_status cp_replication_run(const cp_study *study, const cp_fleet *fleet,
+                             const cp_crash_options *crash_options,
                              const cp_replication_row *replication, cp_result_rows *results,
                              cp_error *error)
 {
     const cp_study_scenario *scenario = &study->scenarios[replication->scenario];
-    replication_run run = {
-        .study = study, .fleet = fleet, .scenario = scenario, .results = results};
+    replication_run run = {.study = study,
+                           .fleet = fleet,
+                           .crash_options = crash_options,
+                           .scenario = scenario,
+                           .results = results};
     cp_simulation_settings settings =
         settings_of(study, scenario, &study->variants[replication->variant], replication->seed);
     cp_status status = cp_simulation_begin(&settings, &run.simulation, error);

@@ -2,6 +2,7 @@
 #ifndef RUN_REPLICATION_H
 #define RUN_REPLICATION_H
 
+#include "crash/crash_simulation.h"
 #include "run/fleet.h"
 #include "store/result_rows.h"
 #include "study/study_file.h"
@@ -12,6 +13,7 @@
 /* Simulate and append to results (zeroed but for its id and attempt). The crash library must have
  * begun. Errors: CP_BAD_INPUT for a configuration that does not start, CP_TRAFFIC_FAILED, ... */
 CP_MUST_CHECK cp_status cp_replication_run(const cp_study *study, const cp_fleet *fleet,
+                                           const cp_crash_options *crash_options,
                                            const cp_replication_row *replication,
                                            cp_result_rows *results, cp_error *error);
 

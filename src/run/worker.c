@@ -77,7 +77,7 @@ static cp_status run_claimed(const cp_study *study, const cp_fleet *fleet,
     cp_crash_options options = cp_crash_options_default();
     results.crash_options = cp_crash_options_json(&options);
     status = results.crash_options != NULL
-                 ? cp_replication_run(study, fleet, replication, &results, error)
+                 ? cp_replication_run(study, fleet, &options, replication, &results, error)
                  : cp_fail_memory(error, "crash options");
     if (status == CP_OK)
         status = cp_vehicle_types_add(&results, error);

@@ -67,6 +67,14 @@ static cp_impact_names names_of(const char *type_of_b)
         .at_fault = {true, false}};
 }
 
+static cp_status fill(const cp_impact *impact, const cp_impact_names *names, const cp_fleet *fleet,
+                      cp_crash_row *row, cp_error *error)
+{
+    const cp_crash_options options = cp_crash_options_default();
+    const cp_crash_record_settings settings = {&options, CP_RECORD_ALL};
+    return cp_crash_record_fill(impact, names, fleet, &settings, row, error);
+}
+
 static void record_as(const cp_impact *impact, const char *type_of_b, cp_result_rows *rows)
 {
     small_fleet f;
@@ -75,8 +83,7 @@ static void record_as(const cp_impact *impact, const char *type_of_b, cp_result_
     fill_fleet(&f);
     cp_crash_row *row = cp_result_rows_add_crash(rows);
     assert_non_null(row);
-    assert_int_equal(cp_crash_record_fill(impact, &names, &f.fleet, CP_RECORD_ALL, row, &error),
-                     CP_OK);
+    assert_int_equal(fill(impact, &names, &f.fleet, row, &error), CP_OK);
 }
 
 static void record(const cp_impact *impact, cp_result_rows *rows)
@@ -137,8 +144,7 @@ static void validity_is_each_cars_own(void **state)
             names.type[1] = car;
         }
         cp_crash_row *row = cp_result_rows_add_crash(&rows);
-        assert_int_equal(
-            cp_crash_record_fill(&impact, &names, &f.fleet, CP_RECORD_ALL, row, &error), CP_OK);
+        assert_int_equal(fill(&impact, &names, &f.fleet, row, &error), CP_OK);
         assert_string_equal(row->vehicle[role_of_van].vehicle_model, "van");
         assert_int_equal(row->vehicle[role_of_van].outside, 0);
         assert_int_equal(row->vehicle[1 - role_of_van].outside, CP_OUTSIDE_SPEED);
@@ -149,12 +155,37 @@ static void validity_is_each_cars_own(void **state)
         f.models[1].calibrated_speed_min_m_s = 0.0;
         rows = (cp_result_rows){0};
         row = cp_result_rows_add_crash(&rows);
-        assert_int_equal(
-            cp_crash_record_fill(&impact, &names, &f.fleet, CP_RECORD_ALL, row, &error), CP_OK);
+        assert_int_equal(fill(&impact, &names, &f.fleet, row, &error), CP_OK);
         assert_true(row->vehicle[role_of_van].outside & CP_OUTSIDE_MODEL);
         assert_int_equal(row->vehicle[1 - role_of_van].outside, CP_OUTSIDE_SPEED);
         cp_result_rows_destroy(&rows);
     }
+}
+
+// The surrogate runs with the options that are given, which are those that are stored.
+static void options_are_those_given(void **state)
+{
+    (void)state;
+    cp_result_rows rows = {0};
+    cp_error error = {0};
+    small_fleet f;
+    fill_fleet(&f);
+    cp_impact impact = head_on(0.3);
+    cp_impact_names names = names_of("van");
+    double delta_v_m_s[3];
+    for (int k = 0; k < 3; k++) {
+        cp_crash_options options = cp_crash_options_default();
+        options.time_step_s *= k == 1 ? 0.5 : 1.0;
+        const cp_crash_record_settings settings = {&options, CP_RECORD_PULSE};
+        cp_crash_row *row = cp_result_rows_add_crash(&rows);
+        assert_int_equal(cp_crash_record_fill(&impact, &names, &f.fleet, &settings, row, &error),
+                         CP_OK);
+        delta_v_m_s[k] = row->vehicle[0].severity.delta_v_m_s;
+    }
+    assert_true(delta_v_m_s[0] == delta_v_m_s[2]);
+    assert_true(delta_v_m_s[0] != delta_v_m_s[1]);
+    assert_true(fabs(delta_v_m_s[1] / delta_v_m_s[0] - 1.0) < 0.01);
+    cp_result_rows_destroy(&rows);
 }
 
 static void olc_is_for_struck_fronts_only(void **state)
@@ -344,6 +375,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(front_to_front),
         cmocka_unit_test(validity_is_each_cars_own),
+        cmocka_unit_test(options_are_those_given),
         cmocka_unit_test(olc_is_for_struck_fronts_only),
         cmocka_unit_test(crash_without_simulation_is_kept),
         cmocka_unit_test(vehicle_without_model_is_no_car),

@@ -24,6 +24,7 @@ typedef struct world {
     cp_study study; /* names no vehicles: everybody is the fleet's car */
     cp_vehicle_model model;
     cp_fleet fleet;
+    cp_crash_options crash_options;
     cp_control_settings aeb;
     cp_treatment treatment[2];
     cp_treatments treatments;
@@ -39,7 +40,7 @@ static void prepare(world *w)
     static const char *const NAMES[] = {"ttc_s", "deceleration_m_s2", "required_deceleration_m_s2",
                                         NULL};
     static const double VALUES[] = {2.0, 8.0, 0.0};
-    *w = (world){.model = cp_vehicle_model_default()};
+    *w = (world){.model = cp_vehicle_model_default(), .crash_options = cp_crash_options_default()};
     strcpy(w->model.name, "car");
     w->study = (cp_study){.vehicles = &w->vehicle, .vehicle_count = 1};
     w->fleet = (cp_fleet){.study = &w->study, .models = &w->model, .count = 1};
@@ -95,10 +96,10 @@ static cp_crash_row *record(world *w, const cp_found_contact *found)
                                          &names.type[role], &error),
                          CP_OK);
     }
+    const cp_crash_record_settings how = {&w->crash_options, CP_RECORD_ALL};
     cp_crash_row *row = cp_result_rows_add_crash(&w->results);
     assert_non_null(row);
-    if (cp_crash_record_fill(&found->impact, &names, &w->fleet, CP_RECORD_ALL, row, &error) !=
-        CP_OK)
+    if (cp_crash_record_fill(&found->impact, &names, &w->fleet, &how, row, &error) != CP_OK)
         fail_msg("%s", error.text);
     assert_int_equal(
         cp_participant_rows_copy(&found->participants, false, &row->participants, &error), CP_OK);
@@ -111,8 +112,9 @@ static void conclude(world *w)
     for (size_t k = 0; k < w->simulation.found_count; k++)
         if (w->simulation.found[k].found_as == CP_FOUND_CRASH)
             record(w, &w->simulation.found[k]);
-    if (cp_counterfactual_conclude(w->counterfactual, &w->fleet, w->results.crash,
-                                   w->results.crash_count, &w->rows, &error) != CP_OK)
+    if (cp_counterfactual_conclude(w->counterfactual, &w->fleet, &w->crash_options,
+                                   w->results.crash, w->results.crash_count, &w->rows,
+                                   &error) != CP_OK)
         fail_msg("%s", error.text);
 }
 
@@ -357,6 +359,7 @@ static void a_pair_keeps_the_roles_of_the_baseline(void **state)
     const cp_pair pair = {.treatments = &w.treatments,
                           .simulation = &w.simulation,
                           .fleet = &w.fleet,
+                          .crash_options = &w.crash_options,
                           .crash = crash,
                           .ids = {ids[0], ids[1]},
                           .status = CP_NULL_REPRODUCED,

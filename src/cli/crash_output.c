@@ -63,8 +63,8 @@ static const char *olc_status(const cp_crash_run *run, int role)
 
 static const char *validity(const cp_crash_run *run, int role, char text[CP_VALIDITY_TEXT_SIZE])
 {
-    unsigned outside =
-        cp_validity(run->model[0], run->model[1], &run->configuration, &run->description, role);
+    unsigned outside = cp_validity(run->model[0], run->model[1], &run->configuration,
+                                   &run->description, role, NULL);
     outside |= cp_validity_of_meeting(run->result.touched, run->result.shift_m);
     return cp_validity_text(outside | (run->is_damaged ? CP_OUTSIDE_DAMAGED : 0), text);
 }

@@ -81,6 +81,11 @@ void cp_crash_library_end(void)
     dCloseODE();
 }
 
+bool cp_crash_library_is_double(void)
+{
+    return dCheckConfiguration("ODE_double_precision") != 0;
+}
+
 cp_status cp_crash_thread_begin(cp_error *error)
 {
     if (!dAllocateODEDataForThread(dAllocateMaskAll))

@@ -121,6 +121,8 @@ void cp_crash_result_destroy(cp_crash_result *result);
  * no memory the process ends with a message and exit code 1: it writes through what it is given. */
 CP_MUST_CHECK cp_status cp_crash_library_begin(cp_error *error);
 void cp_crash_library_end(void);
+/* Whether the ODE that was loaded computes in double precision, as it must. */
+bool cp_crash_library_is_double(void);
 /* In every further thread that simulates. */
 CP_MUST_CHECK cp_status cp_crash_thread_begin(cp_error *error);
 void cp_crash_thread_end(void);

@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "core/yaml_file.h"
 #include "crash/crush_law.h"
+#include "crash/vehicle_schema.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -192,7 +193,7 @@ static const cyaml_schema_field_t VEHICLE_FIELDS[] = {
                          ensemble, &ENSEMBLE_VALUE, 1, CYAML_UNLIMITED),
     CYAML_FIELD_END};
 
-static const cyaml_schema_value_t VEHICLE_VALUE = {
+const cyaml_schema_value_t CP_VEHICLE_SCHEMA = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, yaml_vehicle, VEHICLE_FIELDS)};
 
 static cp_status read_calibrated(const cp_yaml_file *file, const yaml_calibrated *calibrated,
@@ -349,7 +350,7 @@ cp_status cp_vehicle_model_parse(const char *name, const char *content, size_t s
                                  cp_vehicle_model *model, cp_error *error)
 {
     cp_yaml_file file = {0};
-    cp_status status = cp_yaml_parse(name, content, size, &VEHICLE_VALUE, &file, error);
+    cp_status status = cp_yaml_parse(name, content, size, &CP_VEHICLE_SCHEMA, &file, error);
     if (status != CP_OK)
         return status;
     const yaml_vehicle *vehicle = (const yaml_vehicle *)file.data;

@@ -13,11 +13,11 @@
  * of gravity or as named. X(field, unit, default, smallest, largest, what it is). The defaults are
  * a mid-size car (first parameter set, not fitted). */
 #define CP_VEHICLE_PARAMETERS(X)                                                                   \
-    X(mass_kg, "kg", 1640, 500, 5000, "whole car as it crashes, occupants included")               \
-    X(yaw_inertia_kg_m2, "kg m2", 2700, 500, 12000, "whole car about its centre of gravity")       \
-    X(length_m, "m", 4.86, 2.5, 8.0, "bumper to bumper")                                           \
-    X(width_m, "m", 1.85, 1.3, 2.6, "without mirrors")                                             \
-    X(cg_to_front_m, "m", 2.05, 0.8, 4.5, "centre of gravity to front bumper")                     \
+    X(mass_kg, "kg", 1640, 500, 60000, "whole car as it crashes, occupants included")              \
+    X(yaw_inertia_kg_m2, "kg m2", 2700, 500, 2500000, "whole car about its centre of gravity")     \
+    X(length_m, "m", 4.86, 2.5, 26.0, "bumper to bumper")                                          \
+    X(width_m, "m", 1.85, 1.3, 2.7, "without mirrors")                                             \
+    X(cg_to_front_m, "m", 2.05, 0.8, 12, "centre of gravity to front bumper")                      \
     X(longitudinal_y_m, "m", 0.47, 0.3, 0.7,                                                       \
       "middle of a longitudinal member from the centre line")                                      \
     X(longitudinal_length_m, "m", 0.62, 0.3, 1.0, "longitudinal member, hinge to crash box")       \

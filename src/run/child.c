@@ -2,6 +2,7 @@
 #include "run/child.h"
 
 #include "core/installation.h"
+#include "core/log.h"
 #include "core/progress.h"
 #include "core/scratch.h"
 #include "run/child_environment.h"
@@ -20,7 +21,6 @@
 #include <unistd.h>
 
 #define TAIL_BYTES 1500 /* of stderr kept as the reason of a failure */
-#define LOG_PREFIX "crashpulse: "
 #define WORKER_NAME "crashpulse-worker"
 
 extern char **environ;
@@ -97,6 +97,16 @@ cp_status cp_child_find_worker(const char *given, char *path, size_t size, cp_er
     return status;
 }
 
+// With --verbose: what is started.
+static void tell_start(const char *const *arguments, pid_t pid)
+{
+    char words[2048] = "";
+    for (size_t k = 0, used = 0; arguments[k] != NULL && used < sizeof words; k++)
+        used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", k > 0 ? " " : "",
+                                 arguments[k]);
+    cp_log_detail("process %ld starts: %s", (long)pid, words);
+}
+
 cp_status cp_child_start(const char *program, const char *const *arguments, cp_child *child,
                          cp_error *error)
 {
@@ -113,8 +123,10 @@ cp_status cp_child_start(const char *program, const char *const *arguments, cp_c
         failed = spawn(program, arguments, child, ends[1]);
         close(ends[1]);
     }
-    if (failed == 0)
+    if (failed == 0) {
+        tell_start(arguments, child->pid);
         return CP_OK;
+    }
     bool has_file = child->messages != NULL;
     if (has_file)
         fclose(child->messages);
@@ -135,9 +147,9 @@ static void pass_on_log(FILE *messages, cp_said *said)
     char line[8192];
     rewind(messages);
     while (fgets(line, sizeof line, messages) != NULL)
-        if (strncmp(line, LOG_PREFIX, strlen(LOG_PREFIX)) == 0 &&
+        if (strncmp(line, CP_LOG_PREFIX, strlen(CP_LOG_PREFIX)) == 0 &&
             (said == NULL || cp_said_is_new(said, line)))
-            fputs(line, stderr);
+            cp_log_pass_on(line);
 }
 
 static void append(char reason[CP_CHILD_REASON_SIZE], const char *text)
@@ -196,6 +208,8 @@ void cp_child_collect(cp_child *child, int wait_status, cp_child_end *end)
     end->wall_time_s = cp_clock_s() - child->started_s;
     end->reason[0] = '\0';
     pass_on_log(child->messages, child->said);
+    cp_log_detail("process %ld ended after %.2f s, exit code %d", (long)child->pid,
+                  end->wall_time_s, code);
     if (end->exit_code != 0 && end->exit_code != CP_WORKER_EXIT_ELSEWHERE)
         explain(child, wait_status, end->reason);
     fclose(child->messages);

@@ -2,6 +2,7 @@
 #include "run/replication.h"
 
 #include "core/log.h"
+#include "run/contact_rows.h"
 #include "run/counterfactual.h"
 #include "run/crash_record.h"
 #include "run/probe_outputs.h"
@@ -88,8 +89,8 @@ static cp_status name_crash(const replication_run *run, const cp_found_contact *
     const cp_impact *impact = &found->impact;
     *named = (named_crash){.found = found, .names.sumocfg_path = run->simulation.sumocfg_path};
     for (int role = 0; role < 2; role++) {
-        named->names.at_fault[role] = found->at_fault[role];
-        named->names.had_crashed[role] = found->had_crashed[role];
+        named->names.at_fault[role] = found->car[role].at_fault;
+        named->names.had_crashed[role] = found->car[role].had_crashed;
         named->id[role] =
             strdup(cp_traffic_vehicle_id(run->simulation.traffic, impact->vehicle[role]));
         named->type[role] =
@@ -167,20 +168,11 @@ static cp_status record_crashes(replication_run *run, cp_error *error)
 static cp_status record_contact(replication_run *run, const cp_found_contact *found,
                                 cp_error *error)
 {
-    const cp_impact *impact = &found->impact;
-    cp_contact_row *row = cp_result_rows_add_contact(run->results);
-    if (row == NULL)
-        return cp_fail_memory(error, "contact");
-    row->time_s = impact->time_s;
-    row->contact_m = impact->contact_m;
-    row->verdict = found->found_as;
-    for (int role = 0; role < 2; role++) {
-        row->vehicle[role] =
-            strdup(cp_traffic_vehicle_id(run->simulation.traffic, impact->vehicle[role]));
-        if (row->vehicle[role] == NULL)
-            return cp_fail_memory(error, "contact");
-    }
-    return CP_OK;
+    const cp_traffic *traffic = run->simulation.traffic;
+    const char *const ids[2] = {cp_traffic_vehicle_id(traffic, found->impact.vehicle[0]),
+                                cp_traffic_vehicle_id(traffic, found->impact.vehicle[1])};
+    return cp_contact_rows_add(run->results, &found->impact, cp_found_as_text(found->found_as), ids,
+                               error);
 }
 
 static cp_status record_contacts(replication_run *run, cp_error *error)
@@ -210,25 +202,26 @@ static cp_status record_cross_check(replication_run *run, const cp_replication_r
                                     cp_error *error)
 {
     cp_cross_check *check = &run->simulation.check;
+    const cp_traffic *traffic = run->simulation.traffic;
     size_t unexplained = 0, first = 0;
+    cp_status status = CP_OK;
     cp_cross_check_match(check);
-    for (size_t k = 0; k < check->sumo_count; k++) {
-        cp_cross_check_pair *pair = &check->sumo[k];
-        cp_sumo_collision_row *row = cp_result_rows_add_sumo_collision(run->results);
-        if (row == NULL)
-            return cp_fail_memory(error, "collision of SUMO");
-        row->time_s = pair->time_s;
-        row->collider = strdup(cp_traffic_vehicle_id(run->simulation.traffic, pair->collider));
-        row->victim = strdup(cp_traffic_vehicle_id(run->simulation.traffic, pair->victim));
-        row->type = strdup(pair->type);
-        row->found_as = pair->found_as;
-        row->gap_m = isfinite(pair->gap_m) ? pair->gap_m : NAN;
-        if (row->collider == NULL || row->victim == NULL || row->type == NULL)
-            return cp_fail_memory(error, "collision of SUMO");
+    for (size_t k = 0; status == CP_OK && k < check->sumo_count; k++) {
+        const cp_cross_check_pair *pair = &check->sumo[k];
+        const cp_reported_collision report = {
+            .time_s = pair->time_s,
+            .collider = cp_traffic_vehicle_id(traffic, pair->collider),
+            .victim = cp_traffic_vehicle_id(traffic, pair->victim),
+            .type = pair->type,
+            .found_as = cp_found_as_text(pair->found_as),
+            .gap_m = pair->gap_m};
+        status = cp_contact_rows_add_report(run->results, &report, error);
         bool is_apart = isfinite(pair->gap_m) && pair->gap_m > 0.0;
-        if (strcmp(pair->found_as, "no_contact") == 0 && !is_apart && unexplained++ == 0)
+        if (pair->found_as == CP_FOUND_NO_CONTACT && !is_apart && unexplained++ == 0)
             first = run->results->sumo_collision_count - 1;
     }
+    if (status != CP_OK)
+        return status;
     // All are stored with what they were found as; what nothing explains is said.
     if (unexplained > 0) {
         const cp_sumo_collision_row *row = &run->results->sumo_collision[first];
@@ -341,6 +334,25 @@ cp_status cp_replication_run(const cp_study *study, const cp_fleet *fleet,
     return status;
 }
 
+// Parameters may be good one by one and contradict each other: the function itself knows. Libraries
+// are not loaded here: what is wrong with them fails their own replications.
+static cp_status try_functions(const cp_study *study, const cp_study_variant *variant,
+                               const cp_traffic *traffic, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < variant->function_count; k++) {
+        cp_controls *controls = NULL;
+        if (variant->functions[k].library != NULL)
+            continue;
+        status = cp_controls_create(&variant->functions[k], 1, study->seed, 1, traffic, &controls,
+                                    error);
+        cp_controls_destroy(controls);
+    }
+    if (status != CP_OK)
+        cp_error_prefix(error, "variant %s: ", variant->name);
+    return status;
+}
+
 cp_status cp_replication_probe(const cp_study *study, const cp_study_scenario *scenario,
                                cp_error *error)
 {
@@ -350,16 +362,8 @@ cp_status cp_replication_probe(const cp_study *study, const cp_study_scenario *s
     if (status == CP_OK)
         status = cp_traffic_step(simulation.traffic, error);
 
-    // Parameters may be good one by one and contradict each other: the controls themselves know.
-    for (size_t k = 0; status == CP_OK && k < study->variant_count; k++) {
-        const cp_study_variant *variant = &study->variants[k];
-        cp_controls *controls = NULL;
-        status = cp_controls_create(variant->functions, variant->function_count, study->seed, 1,
-                                    simulation.traffic, &controls, error);
-        cp_controls_destroy(controls);
-        if (status != CP_OK)
-            cp_error_prefix(error, "variant %s: ", variant->name);
-    }
+    for (size_t k = 0; status == CP_OK && k < study->variant_count; k++)
+        status = try_functions(study, &study->variants[k], simulation.traffic, error);
     cp_probe_outputs_delete(scenario->name);
     cp_simulation_end(&simulation);
 

@@ -10,9 +10,10 @@
 
 #define CP_CRASHES_MAX (1 << 14) /* per replication: room in the row id, below 2^53 */
 
-/* Parameters 5 to 48: frontal, the columns from sumo_id to contact_side, validity, severity, mass
- * and place, number of driver errors, intrusion, of the vehicle of a role. The text of validity is
- * borrowed until the statement has run. */
+/* Parameters 5 to 52: frontal, the columns from sumo_id to contact_side, validity, severity, mass
+ * and place, number of driver errors, intrusion, what was drawn and evidence, of the vehicle of a
+ * role. The text of validity is borrowed
+ * until the statement has run. */
 void cp_bind_crash_vehicle(cp_statement *statement, const cp_crash_row *crash, int role,
                            char validity[CP_VALIDITY_TEXT_SIZE]);
 

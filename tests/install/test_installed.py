@@ -64,6 +64,9 @@ def check_files(prefix):
                 for folder in (source, build):
                     assert str(folder).encode() not in content, f"{path} names {folder}"
     assert programs >= 4, f"{programs} programs and libraries"
+    for part in ("share/man/man1/crashpulse-run.1", "share/bash-completion/completions/crashpulse", "include/crashpulse.h",
+                 "share/crashpulse/sumo_scenarios/town/town.rou.xml", "share/crashpulse/db/queries/worst_crashes.sql"):
+        assert (prefix / part).is_file(), f"{part} is missing"
 
 
 def check_program(program, data, before, folder):
@@ -90,6 +93,31 @@ def check_program(program, data, before, folder):
     assert rows == [{"done": 2, "has_functions": 1}], rows
 
 
+def check_own_network(program, before, folder):
+    """A study that init makes of a network from elsewhere."""
+    environment = {"PATH": "/usr/bin:/bin", "HOME": str(folder), "TMPDIR": str(folder), "SUMO_HOME": "/usr/share/sumo"}
+
+    def here(*words):
+        return run(*before, *words, cwd=folder, env=environment)
+
+    here("netgenerate", "--grid", "--grid.number", "2", "--grid.length", "150", "--output-file", "foreign.net.xml")
+    (folder / "foreign.rou.xml").write_text(
+        '<routes><flow id="f" from="A0B0" to="B1A1" begin="0" end="60" period="3"/>'
+        '<flow id="g" from="B1A1" to="A0B0" begin="0" end="60" period="3"/></routes>')
+    (folder / "foreign.sumocfg").write_text(
+        '<configuration><net-file value="foreign.net.xml"/><route-files value="foreign.rou.xml"/>'
+        '<end value="80"/></configuration>')
+    here(program, "init", "mine", "--network", "foreign.sumocfg")
+    here(program, "run", "mine/study.yaml", "--db", "mine/study.db", "--jobs", "2")
+    rows = json.loads(here(program, "sql", "mine/study.db", "--format", "json",
+                           "SELECT count(*) AS done FROM replication WHERE status = 'done'"))
+    assert rows == [{"done": 8}], rows
+    here(program, "compare", "mine/study.db")
+    here(program, "report", "mine/study.db", "--output", "mine/report.html")
+    assert (folder / "mine/report.html").stat().st_size > 100000
+    here(program, "init", "example") # the one that is installed, copied
+
+
 def make_folders(top):
     """A folder that everybody reads and one that anybody writes."""
     top.chmod(0o755)
@@ -109,6 +137,7 @@ def check_prefix(top):
     if not before:
         print("source and build folder stay in reach: the system lets no mounts be made")
     check_program(prefix / "bin/crashpulse", prefix / "share/crashpulse", before, own)
+    check_own_network(prefix / "bin/crashpulse", before, own)
 
 
 def check_library(top):
@@ -169,6 +198,7 @@ def check_package(top):
     if not before:
         sys.exit("SKIPPED: the system lets no overlay be mounted")
     check_program("/usr/bin/crashpulse", root / "usr/share/crashpulse", before, own)
+    check_own_network("/usr/bin/crashpulse", before, own)
 
 
 with tempfile.TemporaryDirectory(prefix="crashpulse-") as folder:

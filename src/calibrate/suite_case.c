@@ -5,7 +5,6 @@
 #include "calibrate/suite_struck.h"
 #include "core/file.h"
 #include "core/units.h"
-#include "crash/named_vehicle.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -25,26 +24,7 @@ int cp_suite_case_cars(const cp_suite_class *class, const cp_suite_comparison *c
     return both && of_each && comparison->car == 0 ? 2 : 1;
 }
 
-cp_status cp_suite_vehicle(const char *base, const char *text, cp_vehicle_model *model,
-                           cp_error *error)
-{
-    return cp_named_vehicle_load(base, text, model, error);
-}
-
 // ---- making cases ------------------------------------------------------------------------------
-
-cp_suite_case cp_suite_plain_case(const cp_suite_class *class, const cp_vehicle_model *vehicle)
-{
-    cp_suite_case row = {.model = {*vehicle, *vehicle},
-                         .has_barrier = class->has_barrier,
-                         .barrier = class->barrier,
-                         .side_1 = 1.0,
-                         .offset_count = 1};
-    for (int c = 0; c < 2; c++)
-        for (int q = 0; q < CP_SUITE_QUANTITY_COUNT; q++)
-            row.reference[c][q] = NAN;
-    return row;
-}
 
 // Offset at which the opponent covers a share of the first car's width from its left side (side_1 =
 // +1) or its right; NAN stands for middle on middle.
@@ -53,18 +33,6 @@ static double offset_of_overlap(const cp_suite_case *row, double overlap_1, doub
     double own_m = row->model[0].width_m;
     double other_m = row->is_pair ? row->model[1].width_m : row->barrier.width_m;
     return isnan(overlap_1) ? 0.0 : side_1 * (0.5 * (own_m + other_m) - overlap_1 * own_m);
-}
-
-cp_status cp_suite_cases_make(cp_suite_cases *cases, size_t count, cp_error *error)
-{
-    cases->row = calloc(count, sizeof *cases->row);
-    return cases->row != NULL ? CP_OK : cp_fail_memory(error, "cases of a suite");
-}
-
-void cp_suite_set_mass(cp_vehicle_model *model, double mass_kg)
-{
-    model->yaw_inertia_kg_m2 *= mass_kg / model->mass_kg;
-    model->mass_kg = mass_kg;
 }
 
 static void name_listed_case(const cp_suite_class *class, const cp_suite_case *row, double speed,
@@ -153,16 +121,6 @@ static cp_status olc_cases(const char *path, const cp_suite_class *class,
                  test->offset_mm, test->angle_deg);
     }
     cp_reference_destroy(&table);
-    return status;
-}
-
-cp_status cp_suite_read_columns(const cp_csv_table *table, size_t k, const cp_suite_column *columns,
-                                size_t count, cp_error *error)
-{
-    cp_status status = CP_OK;
-    for (size_t c = 0; status == CP_OK && c < count; c++)
-        status = cp_csv_table_number(table, k, columns[c].column, columns[c].smallest,
-                                     columns[c].largest, false, columns[c].value, error);
     return status;
 }
 

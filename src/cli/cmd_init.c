@@ -17,6 +17,7 @@
 #include <sys/stat.h>
 
 #define EXAMPLE "left_turn"
+#define EXAMPLE_S 600.0 /* of it: a minute of work in all */
 
 typedef struct arguments {
     const char *folder;
@@ -147,7 +148,7 @@ static cp_status copy_example(const char *folder, char sumocfg[PATH_MAX], cp_err
 // ---- the study -----------------------------------------------------------------------------
 
 static cp_status write_study(const char *sumocfg, const char *as_named, const char *path,
-                             cp_error *error)
+                             double longest_s, cp_error *error)
 {
     cp_sumo_configuration configuration = {0};
     cp_network_survey survey = {0};
@@ -162,7 +163,7 @@ static cp_status write_study(const char *sumocfg, const char *as_named, const ch
             cp_fail(error, CP_BAD_INPUT,
                     "%s: names no network that can be read (net-file with edges in it)", sumocfg);
     if (status == CP_OK) {
-        cp_study_draft draft = cp_study_draft_of(&configuration, &survey);
+        cp_study_draft draft = cp_study_draft_of(&configuration, &survey, longest_s);
         FILE *out = cp_memory_stream(&text, &size);
         if (out != NULL)
             cp_study_draft_write(&draft, &survey, name, as_named, out);
@@ -224,7 +225,7 @@ cp_status cmd_init(int argc, char **argv, cp_error *error)
     if (status == CP_OK)
         status = relative_path(folder, sumocfg, as_named, sizeof as_named, error);
     if (status == CP_OK)
-        status = write_study(sumocfg, as_named, study, error);
+        status = write_study(sumocfg, as_named, study, a.network == NULL ? EXAMPLE_S : 0.0, error);
     if (status == CP_OK)
         status = check_study(study, error);
     if (status == CP_OK)

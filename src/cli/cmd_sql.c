@@ -50,7 +50,7 @@ static const struct argp ARGP = {
            "\v"
            "Tables and views are described in db/schema and db/views.sql, questions others asked "
            "are in db/queries. The functions of the SQL extension are loaded: median, quantile, "
-           "cliffs_delta, ks_distance, olc, delta_v, peak, cfc, pulse_samples (README).\n\n"
+           "cliffs_delta, ks_distance, olc, delta_v, peak, cfc, pulse_samples (db/README.md).\n\n"
            "Examples:\n"
            "  crashpulse sql demo.db \"SELECT * FROM olc_by_variant\"\n"
            "  crashpulse sql demo.db -f csv \"SELECT * FROM frontal_vehicle\" > cars.csv\n"

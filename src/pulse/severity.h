@@ -5,7 +5,7 @@
 #include "pulse/olc.h"
 #include "pulse/pulse.h"
 
-/* Severity measures of one pulse (shared definitions: README, "What the numbers mean").
+/* Severity measures of one pulse (defined in reports/README.md).
  * End of the crash t_e: separation or, if later, the time of the largest |delta v|, at most 0.5 s.
  * World velocities come from v_x, v_y turned by the heading, in the axes of the initial pose. Means
  * over windows count no acceleration before and after the record. What does not exist is NAN. */

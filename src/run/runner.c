@@ -2,6 +2,7 @@
 #include "run/runner.h"
 
 #include "core/log.h"
+#include "core/memory_stream.h"
 #include "core/progress.h"
 #include "run/child.h"
 #include "run/confinement.h"
@@ -554,10 +555,26 @@ static cp_status run_jobs(runner *run, cp_error *error)
 
 // ---- public --------------------------------------------------------------------------------
 
+// What drivers and functions the study has, a message a line.
+static void tell_controls(const cp_study *study)
+{
+    char *text = NULL, *rest = NULL;
+    size_t size = 0;
+    FILE *out = cp_memory_stream(&text, &size);
+    if (out == NULL)
+        return;
+    cp_controls_text_study(study, "", out);
+    if (fclose(out) == 0)
+        for (char *line = strtok_r(text, "\n", &rest); line != NULL;
+             line = strtok_r(NULL, "\n", &rest))
+            cp_log_info("%s", line);
+    free(text);
+}
+
 // What is really run, and what is not as the files have it.
 static cp_status tell_inputs(const cp_study *study, cp_error *error)
 {
-    cp_controls_text_study(study, "crashpulse: ", stderr);
+    tell_controls(study);
     cp_status status = cp_study_tell_occasions(study, error);
     return status == CP_OK ? cp_study_tell_options(study, error) : status;
 }

@@ -25,7 +25,7 @@ static double number_of(const cp_sumo_configuration *configuration, const char *
 }
 
 static double duration_of(const cp_sumo_configuration *configuration,
-                          const cp_network_survey *survey)
+                          const cp_network_survey *survey, double longest_s)
 {
     double length_s = cp_sumo_configuration_length_s(configuration);
     double begin_s = number_of(configuration, "begin", 0.0);
@@ -34,13 +34,14 @@ static double duration_of(const cp_sumo_configuration *configuration,
     if (!isfinite(length_s) || length_s <= 0.0)
         return UNKNOWN_S;
     // Whole seconds, but never beyond the end of the configuration.
-    return length_s < 1.0 ? length_s : floor(fmin(length_s, LONGEST_S));
+    return length_s < 1.0 ? length_s
+                          : floor(fmin(length_s, longest_s > 0.0 ? longest_s : LONGEST_S));
 }
 
 cp_study_draft cp_study_draft_of(const cp_sumo_configuration *configuration,
-                                 const cp_network_survey *survey)
+                                 const cp_network_survey *survey, double longest_s)
 {
-    double duration_s = duration_of(configuration, survey);
+    double duration_s = duration_of(configuration, survey, longest_s);
     double across_s = survey->diagonal_m / SLOW_M_S;
     double step_s = fmin(number_of(configuration, "step-length", 1.0), STEP_LARGEST_S);
     return (cp_study_draft){

@@ -21,8 +21,9 @@ typedef struct cp_study_draft {
     bool fits_drift;      /* roads have an oncoming lane: lane_drift */
 } cp_study_draft;
 
+/* longest_s: of the duration, in place of an hour; 0: an hour. */
 cp_study_draft cp_study_draft_of(const cp_sumo_configuration *configuration,
-                                 const cp_network_survey *survey);
+                                 const cp_network_survey *survey, double longest_s);
 
 /* Write it as a study file with comments. name: of study and scenario, letters, digits, '_', '-',
  * '.'; sumocfg: as the study file is to name it. */

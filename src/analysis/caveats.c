@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/caveats.h"
 
+#include "core/array.h"
 #include "core/memory_stream.h"
 #include "core/safe_text.h"
 #include "store/query.h"
@@ -51,15 +52,11 @@ static const char *const SQL[] = {
 static cp_status read_row(void *context, const cp_row *row, cp_error *error)
 {
     cp_caveats *caveats = context;
-    char **larger = realloc(caveats->sentence, (caveats->count + 1) * sizeof *larger);
-    if (larger == NULL)
+    char **sentence = cp_array_add(caveats->sentence, caveats->count);
+    if (sentence == NULL)
         return cp_fail_memory(error, "caveats");
-    caveats->sentence = larger;
-    larger[caveats->count] = cp_text_copy_plain(row->cell[0].text);
-    if (larger[caveats->count] == NULL)
-        return cp_fail_memory(error, "caveats");
-    caveats->count++;
-    return CP_OK;
+    *sentence = cp_text_copy_plain(row->cell[0].text);
+    return *sentence != NULL ? CP_OK : cp_fail_memory(error, "caveats");
 }
 
 cp_status cp_caveats_read(cp_store *store, const char *scenario, cp_caveats *caveats,

@@ -2,6 +2,7 @@
 #include "analysis/comparison_store.h"
 
 #include "analysis/quantity.h"
+#include "core/array.h"
 #include "store/comparison_rows.h"
 
 #include <math.h>
@@ -19,14 +20,10 @@ static cp_status append(stored *s, const char *group, const char *variant, const
 {
     if (list->failed)
         return cp_fail_memory(error, "the figures of a comparison");
-    if (s->count + list->count > s->room) {
-        size_t room = 2 * (s->room + list->count);
-        cp_comparison_figure_row *row = realloc(s->row, room * sizeof *row);
-        if (!row)
-            return cp_fail_memory(error, "the figures of a comparison");
-        s->row = row;
-        s->room = room;
-    }
+    cp_status status = cp_array_reserve(s->row, s->room, s->count + list->count,
+                                        "the figures of a comparison", error);
+    if (status != CP_OK)
+        return status;
     for (size_t k = 0; k < list->count; k++) {
         const cp_quantity *q = &list->row[k];
         bool interval = q->kind && q->interval.status == CP_INTERVAL_VALUE;

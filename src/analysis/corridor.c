@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/corridor.h"
 
+#include "analysis/any_vehicle.h"
 #include "core/rng.h"
 #include "core/units.h"
-#include "store/query.h"
-#include "store/result_rows.h"
+#include "store/stored_pulse.h"
 
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics_double.h>
@@ -12,58 +12,19 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A vehicle that has a pulse: of a crash as it happened, or of a treated one. */
-typedef struct pulse_owner {
-    const cp_study_vehicle *vehicle;
-    size_t variant;
-    bool treated;
-} pulse_owner;
-
-// The study's vehicles first, then the treated ones.
-static pulse_owner owner_of(const cp_study_data *data, size_t k)
-{
-    if (k >= data->vehicle_count) {
-        const cp_study_treated *t = &data->treated[k - data->vehicle_count];
-        return (pulse_owner){&t->vehicle, t->variant, true};
-    }
-    const cp_study_vehicle *v = &data->vehicle[k];
-    return (pulse_owner){v, data->replication[data->crash[v->crash].replication].variant, false};
-}
-
-static bool may_have_pulse(const pulse_owner *owner)
+static bool may_have_pulse(const cp_any_vehicle *owner)
 {
     return owner->vehicle->frontal && owner->vehicle->olc != CP_OLC_FAILED;
 }
 
-static cp_status has_pulse(void *context, const cp_row *row, cp_error *error)
-{
-    (void)error;
-    *(bool *)context = row->cell[0].integer != 0;
-    return CP_OK;
-}
-
-static cp_status read_stored(cp_store *store, const cp_study_data *data, const pulse_owner *owner,
-                             cp_pulse *stored, bool *there, cp_error *error)
-{
-    int64_t crash_id = data->crash[owner->vehicle->crash].id;
-    const char role[2] = {owner->vehicle->role, '\0'};
-    if (owner->treated)
-        return cp_counterfactual_pulse_read(store, crash_id, data->variant[owner->variant].name,
-                                            role, stored, there, error);
-    cp_query_handler handler = {.row = has_pulse, .context = there};
-    cp_cell cell[2] = {cp_cell_integer(crash_id), cp_cell_text(role)};
-    cp_status status =
-        cp_query(store, "SELECT EXISTS (SELECT 1 FROM pulse WHERE crash_id = ?1 AND role = ?2)",
-                 cell, 2, &handler, error);
-    return status == CP_OK && *there ? cp_result_pulse_read(store, crash_id, role, stored, error)
-                                     : status;
-}
-
-static cp_status read_pulse(cp_store *store, const cp_study_data *data, const pulse_owner *owner,
+static cp_status read_pulse(cp_store *store, const cp_study_data *data, const cp_any_vehicle *owner,
                             float g[CP_CORRIDOR_POINTS], bool *there, cp_error *error)
 {
     cp_pulse stored = {0}, filtered = {0};
-    cp_status status = read_stored(store, data, owner, &stored, there, error);
+    const char role[2] = {owner->vehicle->role, '\0'};
+    const char *variant = owner->treated ? data->variant[owner->variant].name : NULL;
+    cp_status status =
+        cp_stored_pulse_read(store, owner->crash->id, variant, role, &stored, there, error);
     if (status == CP_OK && *there)
         status = cp_pulse_filtered(&stored, 60.0, &filtered, error);
     for (size_t k = 0; k < CP_CORRIDOR_POINTS && status == CP_OK && *there; k++) {
@@ -82,8 +43,8 @@ static cp_status read_pulse(cp_store *store, const cp_study_data *data, const pu
 static double *chances(const cp_study_data *data)
 {
     double *chance = calloc(data->variant_count + 1, sizeof *chance);
-    for (size_t k = 0; chance && k < data->vehicle_count + data->treated_count; k++) {
-        pulse_owner owner = owner_of(data, k);
+    for (size_t k = 0; chance && k < cp_any_vehicle_count(data); k++) {
+        cp_any_vehicle owner = cp_any_vehicle_at(data, k);
         chance[owner.variant] += may_have_pulse(&owner);
     }
     for (size_t v = 0; chance && v < data->variant_count; v++)
@@ -97,7 +58,7 @@ cp_status cp_corridor_read(cp_store *store, const cp_study_data *data, cp_corrid
     *pulses = (cp_corridor_pulses){0};
     double *chance = chances(data);
     size_t room = (size_t)2 * CP_CORRIDOR_PULSES_MAX * (data->variant_count + 1);
-    size_t count = data->vehicle_count + data->treated_count;
+    size_t count = cp_any_vehicle_count(data);
     pulses->vehicle = calloc(room, sizeof *pulses->vehicle);
     pulses->g = calloc(room, sizeof *pulses->g);
     cp_status status = CP_OK;
@@ -105,9 +66,9 @@ cp_status cp_corridor_read(cp_store *store, const cp_study_data *data, cp_corrid
         status = cp_fail_memory(error, "pulses of a report");
     cp_rng_key key = cp_rng_key_text(cp_rng_key_seed(data->seed), "report pulses");
     for (size_t k = 0; k < count && pulses->count < room && status == CP_OK; k++) {
-        pulse_owner owner = owner_of(data, k);
+        cp_any_vehicle owner = cp_any_vehicle_at(data, k);
         const cp_study_vehicle *v = owner.vehicle;
-        uint64_t own = (uint64_t)data->crash[v->crash].id * 2 + (v->role == 'b');
+        uint64_t own = (uint64_t)owner.crash->id * 2 + (v->role == 'b');
         if (!may_have_pulse(&owner) || cp_rng_uniform(key, own) >= chance[owner.variant])
             continue;
         bool there = false;

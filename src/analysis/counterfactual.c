@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/counterfactual.h"
 
+#include "analysis/pair_risk.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -180,22 +182,6 @@ static cp_status figure_model(const pairs *p, int which, cp_counterfactual_figur
     return status;
 }
 
-// Risk of a driver of a pair, of the baseline's crash or of what became of it; 0 where the function
-// is not of this driver. NAN: unknown.
-static double risk_of(const pairs *p, const cp_study_pair *pair, const cp_study_risk *risk,
-                      size_t role, int side, double *gradient)
-{
-    const cp_study_vehicle *vehicle = &p->data->vehicle[2 * pair->crash + role];
-    const cp_study_crash *crash = &p->data->crash[pair->crash];
-    bool frontal = side ? pair->treated_frontal[role] : vehicle->frontal;
-    if ((side && pair->outcome == CP_OUTCOME_AVOIDED) || (risk->frontal_only && !frontal))
-        return 0.0;
-    double predictor =
-        side ? pair->predictor[role][risk->predictor] : vehicle->predictor[risk->predictor];
-    const char *type = side ? pair->treated_type : p->data->crash_type[crash->crash_type];
-    return cp_risk_add(&risk->function, predictor, type, 1.0, gradient);
-}
-
 // Expected injured drivers of the baseline's crashes and of what became of them, by replication.
 // A pair without a known probability on either side is left out of both.
 static void sum_injuries(const pairs *p, const cp_study_risk *risk, double *expected[2],
@@ -213,7 +199,8 @@ static void sum_injuries(const pairs *p, const cp_study_risk *risk, double *expe
             continue;
         for (size_t role = 0; role < 2; role++)
             for (int side = 0; side < 2; side++)
-                own[side] += risk_of(p, pair, risk, role, side, gradient[side]);
+                own[side] +=
+                    cp_pair_risk(p->data, pair, risk, role, side == 1, 1.0, gradient[side]);
         if (isnan(own[0]) || isnan(own[1]))
             continue;
         for (int side = 0; side < 2; side++) {
@@ -241,7 +228,7 @@ static void bound_benefit(const pairs *p, const cp_study_risk *risk, double boun
                                !risk->frontal_only || pair->treated_frontal[role] ||
                                    pair->outcome == CP_OUTCOME_AVOIDED};
             for (int side = 0; side < 2; side++) {
-                double own = risk_of(p, pair, risk, role, side, NULL);
+                double own = cp_pair_risk(p->data, pair, risk, role, side == 1, 1.0, NULL);
                 bool counts = is_known[side] && !isnan(own);
                 known[side] += counts ? own : 0.0;
                 open[side] += !counts && counted[side];

@@ -2,6 +2,7 @@
 #include "analysis/false_activations.h"
 
 #include "analysis/query_json.h"
+#include "core/array.h"
 #include "stats/rates.h"
 #include "store/query.h"
 
@@ -92,20 +93,19 @@ static bool is_of(const json_t *head, const char *name, const cp_cell *cell)
     return strcmp(json_string_value(json_object_get(head, name)), cell->text) == 0;
 }
 
-static bool reserve(gathering *g)
+static cp_status reserve(gathering *g, cp_error *error)
 {
-    if (g->count < g->room)
-        return true;
+    static const char WHAT[] = "activations of functions";
     double **lists[] = {&g->hours, &g->activations, &g->without_error};
-    size_t room = g->room == 0 ? 32 : 2 * g->room;
-    for (int k = 0; k < 3; k++) {
-        double *larger = realloc(*lists[k], room * sizeof *larger);
-        if (larger == NULL)
-            return false;
-        *lists[k] = larger;
+    size_t room = g->room;
+    cp_status status = CP_OK;
+    for (int k = 0; k < 3 && status == CP_OK; k++) {
+        room = g->room;
+        status = cp_array_reserve(*lists[k], room, g->count + 1, WHAT, error);
     }
-    g->room = room;
-    return true;
+    if (status == CP_OK)
+        g->room = room;
+    return status;
 }
 
 static cp_status read_row(void *context, const cp_row *row, cp_error *error)
@@ -125,8 +125,11 @@ static cp_status read_row(void *context, const cp_row *row, cp_error *error)
                             cell[HAS_ERRORS].integer != 0);
         g->knows_errors = true;
     }
-    if (g->head == NULL || !reserve(g))
+    if (g->head == NULL)
         return cp_fail_memory(error, "activations of functions");
+    status = reserve(g, error);
+    if (status != CP_OK)
+        return status;
     g->hours[g->count] = cell[VEHICLE_H].real;
     g->activations[g->count] = cell[ACTIVATIONS].real;
     g->without_error[g->count++] = cell[WITHOUT_ERROR].real;

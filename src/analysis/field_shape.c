@@ -100,14 +100,23 @@ static cp_status compare_number(const cp_field_source *s, const cp_field_units *
     return status;
 }
 
-enum { COMBINATIONS = 3 * 9 * 4 };
+/* Of all margins' classes. */
+enum {
+#define CLASSES_TIMES(name, text, classes, ordered) classes *
+    COMBINATIONS = CP_FIELD_MARGINS(CLASSES_TIMES) 1
+#undef CLASSES_TIMES
+};
 
-// Place of a combination of known classes.
-static size_t combination(unsigned char type, unsigned char delta_v, unsigned char overlap)
+// Place of a combination of classes; SIZE_MAX where one of them is not known.
+static size_t combination(const unsigned char class[CP_FIELD_MARGIN_COUNT])
 {
-    if (type == CP_FIELD_UNKNOWN || delta_v == CP_FIELD_UNKNOWN || overlap == CP_FIELD_UNKNOWN)
-        return SIZE_MAX;
-    return ((size_t)type * 9 + delta_v) * 4 + overlap;
+    size_t place = 0;
+    for (int m = 0; m < CP_FIELD_MARGIN_COUNT; m++) {
+        if (class[m] == CP_FIELD_UNKNOWN)
+            return SIZE_MAX;
+        place = place * CP_FIELD_MARGIN_CLASSES[m] + class[m];
+    }
+    return place;
 }
 
 // What either has of combinations that the other has none of.
@@ -118,9 +127,10 @@ static void compare_combinations(const cp_field_source *s, const cp_field_units 
     double field_sum = 0.0, study_sum = 0.0;
     const cp_field_table *t = s->request->table;
     for (size_t k = 0; k < t->count; k++) {
-        size_t at = combination(cp_field_table_class(t, k, CP_FIELD_TYPE),
-                                cp_field_table_class(t, k, CP_FIELD_DELTA_V),
-                                cp_field_table_class(t, k, CP_FIELD_OVERLAP));
+        unsigned char own[CP_FIELD_MARGIN_COUNT];
+        for (int m = 0; m < CP_FIELD_MARGIN_COUNT; m++)
+            own[m] = cp_field_table_class(t, k, (cp_field_margin)m);
+        size_t at = combination(own);
         field_sum += at != SIZE_MAX ? t->weight[k] : 0.0;
         if (at != SIZE_MAX)
             field[at] += t->weight[k];
@@ -130,7 +140,7 @@ static void compare_combinations(const cp_field_source *s, const cp_field_units 
         for (int m = 0; m < CP_FIELD_MARGIN_COUNT; m++)
             own[m] =
                 cp_field_study_class(s->data, s->request->study, u->vehicle[k], (cp_field_margin)m);
-        size_t at = combination(own[CP_FIELD_TYPE], own[CP_FIELD_DELTA_V], own[CP_FIELD_OVERLAP]);
+        size_t at = combination(own);
         study_sum += at != SIZE_MAX;
         if (at != SIZE_MAX)
             study[at]++;

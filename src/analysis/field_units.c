@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/field_units.h"
 
+#include "analysis/pair_risk.h"
+
 #include <gsl/gsl_sort.h>
 
 #include <math.h>
@@ -117,16 +119,10 @@ static void take_events(const cp_field_source *s, cp_field_units *u, size_t k)
 static double pair_injured(const cp_field_source *s, const cp_study_pair *pair, size_t risk,
                            bool treated, double times, double *gradient)
 {
-    const cp_study_risk *r = &s->data->risk[risk];
     double sum = 0.0;
     for (size_t role = 0; role < 2; role++) {
-        size_t vehicle = 2 * pair->crash + role;
-        bool frontal = treated ? pair->treated_frontal[role] : s->data->vehicle[vehicle].frontal;
-        if ((r->frontal_only && !frontal) || (treated && pair->outcome == CP_OUTCOME_AVOIDED))
-            continue;
-        double p = treated ? cp_risk_add(&r->function, pair->predictor[role][r->predictor],
-                                         pair->treated_type, times, gradient)
-                           : risk_of(s, vehicle, risk, times, gradient);
+        double p =
+            cp_pair_risk(s->data, pair, &s->data->risk[risk], role, treated, times, gradient);
         sum += isnan(p) ? 0.0 : p;
     }
     return sum;

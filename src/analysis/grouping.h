@@ -3,6 +3,7 @@
 #define ANALYSIS_GROUPING_H
 
 #include "analysis/figures.h"
+#include "analysis/study_choice.h"
 
 /* The slices a user asks for: of one scenario or all, restricted by an SQL condition, and one for
  * each value of a column. */

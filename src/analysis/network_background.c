@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/network_background.h"
 
+#include "core/array.h"
 #include "core/memory_stream.h"
 #include "core/safe_text.h"
 #include "stats/rates.h"
@@ -139,12 +140,9 @@ static cp_status read_row(void *context, const cp_row *row, cp_error *error)
 {
     cp_network_backgrounds *backgrounds = context;
     const cp_cell *cell = row->cell;
-    size_t room = backgrounds->count + 1;
-    cp_network_background *larger = realloc(backgrounds->row, room * sizeof *larger);
-    if (!larger)
+    cp_network_background *added = cp_array_add(backgrounds->row, backgrounds->count);
+    if (!added)
         return cp_fail_memory(error, "backgrounds");
-    backgrounds->row = larger;
-    cp_network_background *added = &larger[backgrounds->count++];
     *added = (cp_network_background){.scenario = cp_text_copy_plain(cell[SCENARIO].text),
                                      .is_known = cell[RUNS].integer > 0};
     if (!added->scenario)

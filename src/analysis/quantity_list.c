@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/quantity_list.h"
 
+#include "core/array.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -14,18 +16,9 @@ void cp_quantities_destroy(cp_quantities *list)
 
 cp_quantity *cp_quantities_append(cp_quantities *list)
 {
-    if (list->count == list->room) {
-        size_t room = list->room ? 2 * list->room : 128;
-        cp_quantity *row = realloc(list->row, room * sizeof *row);
-        if (!row) {
-            list->failed = true;
-            return &list->spare;
-        }
-        list->row = row;
-        list->room = room;
-    }
-    list->row[list->count] = (cp_quantity){0};
-    return &list->row[list->count++];
+    cp_quantity *row = cp_array_add(list->row, list->count);
+    list->failed |= !row;
+    return row ? row : &list->spare;
 }
 
 cp_quantity *cp_quantities_add(cp_quantities *list, const char *section, const char *name,

@@ -27,7 +27,6 @@ typedef struct cp_quantity {
 typedef struct cp_quantities {
     cp_quantity *row;
     size_t count;
-    size_t room;
     bool failed;       /* memory is gone */
     cp_quantity spare; /* what is lost then is written here */
 } cp_quantities;

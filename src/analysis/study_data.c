@@ -4,7 +4,7 @@
 #include "analysis/query_json.h"
 #include "analysis/study_places.h"
 #include "analysis/study_risk.h"
-#include "core/memory_stream.h"
+#include "core/array.h"
 #include "core/safe_text.h"
 #include "store/query.h"
 
@@ -12,26 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where the rows of one query go. */
-typedef struct reader {
-    cp_study_data *data;
-    size_t room; /* of the array being filled */
-} reader;
-
-// Room for one more row of an array that doubles; the new row is zeroed.
-static cp_status grow(void **array, size_t count, size_t *room, size_t size, cp_error *error)
-{
-    if (count >= *room) {
-        size_t larger = *room ? 2 * *room : 64;
-        void *moved = realloc(*array, larger * size);
-        if (!moved)
-            return cp_fail_memory(error, "the rows of a study");
-        *array = moved;
-        *room = larger;
-    }
-    memset((char *)*array + count * size, 0, size);
-    return CP_OK;
-}
+static const char ROWS[] = "the rows of a study";
 
 static cp_status copy_text(const char *text, char **copy, cp_error *error)
 {
@@ -48,40 +29,32 @@ static cp_status copy_json(const char *text, json_t **value, cp_error *error)
 
 static cp_status read_scenario(void *context, const cp_row *row, cp_error *error)
 {
-    reader *r = context;
-    cp_study_data *data = r->data;
-    cp_status status = grow((void **)&data->scenario, data->scenario_count, &r->room,
-                            sizeof *data->scenario, error);
-    if (status != CP_OK)
-        return status;
-    cp_study_scenario *scenario = &data->scenario[data->scenario_count++];
-    status = copy_text(row->cell[0].text, &scenario->name, error);
+    cp_study_data *data = context;
+    cp_study_scenario *scenario = cp_array_add(data->scenario, data->scenario_count);
+    if (!scenario)
+        return cp_fail_memory(error, ROWS);
+    cp_status status = copy_text(row->cell[0].text, &scenario->name, error);
     return status == CP_OK ? copy_json(row->cell[1].text, &scenario->driver_errors, error) : status;
 }
 
 static cp_status read_variant(void *context, const cp_row *row, cp_error *error)
 {
-    reader *r = context;
-    cp_study_data *data = r->data;
-    cp_status status =
-        grow((void **)&data->variant, data->variant_count, &r->room, sizeof *data->variant, error);
-    if (status != CP_OK)
-        return status;
-    cp_study_variant *variant = &data->variant[data->variant_count++];
+    cp_study_data *data = context;
+    cp_study_variant *variant = cp_array_add(data->variant, data->variant_count);
+    if (!variant)
+        return cp_fail_memory(error, ROWS);
     variant->is_baseline = row->cell[1].integer != 0;
-    status = copy_text(row->cell[0].text, &variant->name, error);
+    cp_status status = copy_text(row->cell[0].text, &variant->name, error);
     return status == CP_OK ? copy_json(row->cell[2].text, &variant->functions, error) : status;
 }
 
 static cp_status read_replication(void *context, const cp_row *row, cp_error *error)
 {
-    reader *r = context;
-    cp_study_data *data = r->data;
-    cp_status status = grow((void **)&data->replication, data->replication_count, &r->room,
-                            sizeof *data->replication, error);
-    if (status != CP_OK)
-        return status;
-    data->replication[data->replication_count++] = (cp_study_replication){
+    cp_study_data *data = context;
+    cp_study_replication *replication = cp_array_add(data->replication, data->replication_count);
+    if (!replication)
+        return cp_fail_memory(error, ROWS);
+    *replication = (cp_study_replication){
         .scenario = (size_t)row->cell[0].integer,
         .variant = (size_t)row->cell[1].integer,
         .number = row->cell[2].integer,
@@ -92,35 +65,31 @@ static cp_status read_replication(void *context, const cp_row *row, cp_error *er
     return CP_OK;
 }
 
-static cp_status read_text(void *context, const cp_row *row, char ***texts, size_t *count,
-                           cp_error *error)
+static cp_status read_text(const cp_row *row, char ***texts, size_t *count, cp_error *error)
 {
-    reader *r = context;
-    cp_status status = grow((void **)texts, *count, &r->room, sizeof **texts, error);
-    return status == CP_OK ? copy_text(row->cell[0].text, &(*texts)[(*count)++], error) : status;
+    char **text = cp_array_add(*texts, *count);
+    return text ? copy_text(row->cell[0].text, text, error) : cp_fail_memory(error, ROWS);
 }
 
 static cp_status read_crash_type(void *context, const cp_row *row, cp_error *error)
 {
-    cp_study_data *data = ((reader *)context)->data;
-    return read_text(context, row, &data->crash_type, &data->crash_type_count, error);
+    cp_study_data *data = context;
+    return read_text(row, &data->crash_type, &data->crash_type_count, error);
 }
 
 static cp_status read_validity(void *context, const cp_row *row, cp_error *error)
 {
-    cp_study_data *data = ((reader *)context)->data;
-    return read_text(context, row, &data->validity, &data->validity_count, error);
+    cp_study_data *data = context;
+    return read_text(row, &data->validity, &data->validity_count, error);
 }
 
 static cp_status read_crash(void *context, const cp_row *row, cp_error *error)
 {
-    reader *r = context;
-    cp_study_data *data = r->data;
-    cp_status status =
-        grow((void **)&data->crash, data->crash_count, &r->room, sizeof *data->crash, error);
-    if (status != CP_OK)
-        return status;
-    data->crash[data->crash_count++] = (cp_study_crash){
+    cp_study_data *data = context;
+    cp_study_crash *crash = cp_array_add(data->crash, data->crash_count);
+    if (!crash)
+        return cp_fail_memory(error, ROWS);
+    *crash = (cp_study_crash){
         .replication = (size_t)row->cell[0].integer,
         .crash_type = (size_t)row->cell[1].integer,
         .frontal = row->cell[2].integer != 0,
@@ -155,13 +124,10 @@ static cp_study_vehicle vehicle_of(const cp_row *row)
 
 static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
 {
-    reader *r = context;
-    cp_study_data *data = r->data;
-    cp_status status =
-        grow((void **)&data->vehicle, data->vehicle_count, &r->room, sizeof *data->vehicle, error);
-    if (status != CP_OK)
-        return status;
-    cp_study_vehicle *vehicle = &data->vehicle[data->vehicle_count++];
+    cp_study_data *data = context;
+    cp_study_vehicle *vehicle = cp_array_add(data->vehicle, data->vehicle_count);
+    if (!vehicle)
+        return cp_fail_memory(error, ROWS);
     *vehicle = vehicle_of(row);
     data->frontal_vehicle_count += vehicle->frontal;
     return CP_OK;
@@ -169,13 +135,10 @@ static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
 
 static cp_status read_treated(void *context, const cp_row *row, cp_error *error)
 {
-    reader *r = context;
-    cp_study_data *data = r->data;
-    cp_status status =
-        grow((void **)&data->treated, data->treated_count, &r->room, sizeof *data->treated, error);
-    if (status != CP_OK)
-        return status;
-    cp_study_treated *treated = &data->treated[data->treated_count++];
+    cp_study_data *data = context;
+    cp_study_treated *treated = cp_array_add(data->treated, data->treated_count);
+    if (!treated)
+        return cp_fail_memory(error, ROWS);
     treated->vehicle = vehicle_of(row);
     treated->variant = (size_t)row->cell[10 + CP_PREDICTOR_COUNT].integer;
     treated->x_m = row->cell[11 + CP_PREDICTOR_COUNT].real;
@@ -196,13 +159,11 @@ bool cp_predictor_is_speed(cp_predictor predictor)
 
 static cp_status read_risk(void *context, const cp_row *row, cp_error *error)
 {
-    reader *r = context;
-    cp_study_data *data = r->data;
-    cp_status status =
-        grow((void **)&data->risk, data->risk_count, &r->room, sizeof *data->risk, error);
-    if (status != CP_OK)
-        return status;
-    cp_study_risk *risk = &data->risk[data->risk_count++];
+    cp_study_data *data = context;
+    cp_study_risk *risk = cp_array_add(data->risk, data->risk_count);
+    if (!risk)
+        return cp_fail_memory(error, ROWS);
+    cp_status status = CP_OK;
     char **const text[] = {&risk->name, &risk->level, &risk->source, &risk->note};
     for (size_t k = 0; k < 4 && status == CP_OK; k++)
         status = copy_text(row->cell[k].text, text[k], error);
@@ -260,13 +221,10 @@ static cp_status read_pair(void *context, const cp_row *row, cp_error *error)
         CP_NULL_STATUSES(CP_REASON_TEXT)
 #undef CP_REASON_TEXT
     };
-    reader *r = context;
-    cp_study_data *data = r->data;
-    cp_status status =
-        grow((void **)&data->pair, data->pair_count, &r->room, sizeof *data->pair, error);
-    if (status != CP_OK)
-        return status;
-    cp_study_pair *pair = &data->pair[data->pair_count++];
+    cp_study_data *data = context;
+    cp_study_pair *pair = cp_array_add(data->pair, data->pair_count);
+    if (!pair)
+        return cp_fail_memory(error, ROWS);
     *pair = (cp_study_pair){
         .crash = (size_t)row->cell[0].integer,
         .variant = (size_t)row->cell[1].integer,
@@ -359,8 +317,7 @@ static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error
          read_risk},
     };
     for (size_t k = 0; k < sizeof queries / sizeof *queries; k++) {
-        reader r = {.data = data};
-        cp_query_handler handler = {.row = queries[k].row, .context = &r};
+        cp_query_handler handler = {.row = queries[k].row, .context = data};
         cp_status status = cp_query(store, queries[k].sql, NULL, 0, &handler, error);
         if (status != CP_OK)
             return status;
@@ -488,112 +445,4 @@ cp_status cp_study_data_variant(const cp_study_data *data, const char *name, siz
                        names);
     return cp_fail(error, CP_BAD_INPUT,
                    "no variant is marked as the baseline; name one with --baseline: %s", names);
-}
-
-/* Vehicles a query names, by crash and role. */
-typedef struct chooser {
-    const cp_study_data *data;
-    cp_study_choice *choice;
-    bool grouped;
-} chooser;
-
-// Groups come in order, so a new value is a new group.
-static cp_status choose_group(chooser *c, size_t vehicle, const cp_cell *cell, cp_error *error)
-{
-    cp_study_choice *choice = c->choice;
-    char number[64];
-    const char *text = cell->text;
-    if (cell->type == CP_CELL_INTEGER)
-        snprintf(number, sizeof number, "%lld", (long long)cell->integer);
-    else
-        snprintf(number, sizeof number, "%.9g", cell->real);
-    if (cell->type == CP_CELL_INTEGER || cell->type == CP_CELL_REAL)
-        text = number;
-    else if (cell->type == CP_CELL_NULL)
-        text = "NULL";
-    if (choice->value_count == 0 || strcmp(choice->value[choice->value_count - 1], text) != 0) {
-        if (choice->value_count == CP_CHOICE_VALUES_MAX)
-            return cp_fail(error, CP_BAD_INPUT,
-                           "the column has more than %d values; choose one of few, or fewer "
-                           "vehicles",
-                           CP_CHOICE_VALUES_MAX);
-        cp_status status = copy_text(text, &choice->value[choice->value_count], error);
-        if (status != CP_OK)
-            return status;
-        choice->value_count++;
-    }
-    choice->group[vehicle] = choice->value_count - 1;
-    return CP_OK;
-}
-
-static cp_status choose_vehicle(void *context, const cp_row *row, cp_error *error)
-{
-    chooser *c = context;
-    size_t vehicle = 2 * (size_t)row->cell[0].integer + (row->cell[1].text[0] == 'b');
-    if (vehicle >= c->data->vehicle_count ||
-        c->data->vehicle[vehicle].crash != (size_t)row->cell[0].integer)
-        return cp_fail(error, CP_STORE_FAILED, "the database changed while it was read");
-    c->choice->chosen[vehicle] = 1;
-    return c->grouped ? choose_group(c, vehicle, &row->cell[2], error) : CP_OK;
-}
-
-static bool is_name(const char *text)
-{
-    for (const char *c = text; *c; c++)
-        if (!(*c == '_' || (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') ||
-              (c > text && *c >= '0' && *c <= '9')))
-            return false;
-    return *text != '\0';
-}
-
-cp_status cp_study_choose(cp_store *store, const cp_study_data *data, const char *where,
-                          const char *by, cp_study_choice *choice, cp_error *error)
-{
-    *choice = (cp_study_choice){0};
-    if (by && !is_name(by))
-        return cp_fail(error, CP_BAD_INPUT,
-                       "--by must be one column of the view crash_vehicle_list, found '%s'", by);
-    char *sql = NULL;
-    size_t size = 0;
-    FILE *out = cp_memory_stream(&sql, &size);
-    choice->chosen = calloc(data->vehicle_count + 1, sizeof *choice->chosen);
-    choice->group = calloc(data->vehicle_count + 1, sizeof *choice->group);
-    choice->value = calloc(CP_CHOICE_VALUES_MAX, sizeof *choice->value);
-    if (!out || !choice->chosen || !choice->group || !choice->value) {
-        if (out)
-            fclose(out);
-        free(sql);
-        cp_study_choice_destroy(choice);
-        return cp_fail_memory(error, "a choice of vehicles");
-    }
-    for (size_t k = 0; k < data->vehicle_count; k++)
-        choice->group[k] = SIZE_MAX;
-
-    // The condition stands on a line of its own, so that a comment in it ends there.
-    fprintf(out,
-            "%sSELECT c.place, x.role, x.by_value FROM (SELECT crash_id, role, %s AS by_value"
-            " FROM crash_vehicle_list WHERE (%s\n)) AS x JOIN c ON c.id = x.crash_id"
-            " ORDER BY x.by_value, c.place, x.role",
-            CP_STUDY_PLACES, by ? by : "NULL", where ? where : "1");
-    cp_status status = CP_OK;
-    if (fclose(out) != 0)
-        status = cp_fail_memory(error, "a choice of vehicles");
-    chooser c = {data, choice, by != NULL};
-    cp_query_handler handler = {.row = choose_vehicle, .context = &c};
-    if (status == CP_OK)
-        status = cp_query(store, sql, NULL, 0, &handler, error);
-    free(sql);
-    if (status != CP_OK)
-        cp_study_choice_destroy(choice);
-    return status == CP_BAD_INPUT ? cp_error_prefix(error, "--where or --by: ") : status;
-}
-
-void cp_study_choice_destroy(cp_study_choice *choice)
-{
-    for (size_t k = 0; k < choice->value_count; k++)
-        free(choice->value[k]);
-    free(choice->value);
-    free(choice->chosen);
-    free(choice->group);
-    *choice = (cp_study_choice){0};
 }

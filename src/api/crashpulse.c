@@ -168,7 +168,7 @@ static cp_status simulate(const cp_vehicle_model *a, const cp_vehicle_model *b,
     for (int car = 0; car < crash->result.vehicle_count; car++)
         crash->severity[car] =
             severity_of(&crash->result, car, &configuration,
-                        cp_validity(a, b, &configuration, &description, car) | moved);
+                        cp_validity(a, b, &configuration, &description, car, NULL) | moved);
     return CP_OK;
 }
 

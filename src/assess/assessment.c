@@ -3,8 +3,10 @@
 
 #include "assess/collisions.h"
 #include "assess/configurations.h"
+#include "core/array.h"
 #include "core/file.h"
 #include "core/progress.h"
+#include "core/log.h"
 #include "crash/crash_simulation.h"
 #include "crash/named_vehicle.h"
 #include "crash/shipped_vehicle.h"
@@ -21,7 +23,8 @@ static cp_status read_files(cp_assessment *self, cp_error *error)
 {
     const cp_assessment_request *a = &self->request;
     if (a->configurations_path != NULL)
-        return cp_configurations_csv_read(a->configurations_path, &self->configurations, error);
+        return cp_configurations_csv_read(a->configurations_path, a->strict, &self->configurations,
+                                          error);
     cp_status status = cp_sumo_collisions_read(a->collisions_path, &self->collisions, error);
     for (size_t k = 0; status == CP_OK && k < a->routes_count; k++)
         status = cp_vtypes_read(a->routes_path[k], &self->types, error);
@@ -45,12 +48,9 @@ static cp_status add_vehicle(cp_study *study, const char *type, const char *mode
     bool is_path = model != NULL && cp_shipped_vehicle_is_path(model);
     if (model != NULL && cp_named_vehicle_check(model, error) != CP_OK)
         return base != NULL ? cp_error_prefix(error, "%s: ", base) : CP_BAD_INPUT;
-    cp_study_vehicle *larger =
-        realloc(study->vehicles, (study->vehicle_count + 1) * sizeof *larger);
-    if (larger == NULL)
+    cp_study_vehicle *added = cp_array_add(study->vehicles, study->vehicle_count);
+    if (added == NULL)
         return cp_fail_memory(error, "vehicles");
-    study->vehicles = larger;
-    cp_study_vehicle *added = &study->vehicles[study->vehicle_count++];
     *added = (cp_study_vehicle){.type = type != NULL ? strdup(type) : NULL};
     if (is_path)
         added->model_path = base != NULL ? cp_file_beside(base, model) : strdup(model);
@@ -87,6 +87,20 @@ static cp_status gather_vehicles(cp_assessment *self, cp_error *error)
     return status == CP_OK ? cp_fleet_load(study, &self->fleet, error) : status;
 }
 
+// Rows that could not be read count as those that could not be assessed.
+static cp_status assess_list(cp_assessment *self, cp_assessment_keep keep, cp_error *error)
+{
+    const cp_configuration_list *list = &self->configurations;
+    for (size_t k = 0; k < list->bad_count; k++)
+        cp_log_warning("%s; left out", list->bad[k]);
+    cp_status status =
+        cp_assess_configurations(list, self->request.configurations_path, &self->fleet, keep,
+                                 self->request.strict, &self->results, &self->count, error);
+    self->count.listed += list->bad_count;
+    self->count.bad += list->bad_count;
+    return status;
+}
+
 static cp_status assess(cp_assessment *self, cp_error *error)
 {
     const cp_assessment_request *a = &self->request;
@@ -100,9 +114,7 @@ static cp_status assess(cp_assessment *self, cp_error *error)
     if (self->results.crash_options == NULL)
         status = cp_fail_memory(error, "crash options");
     else if (a->configurations_path != NULL)
-        status =
-            cp_assess_configurations(&self->configurations, a->configurations_path, &self->fleet,
-                                     keep, a->strict, &self->results, &self->count, error);
+        status = assess_list(self, keep, error);
     else
         status = cp_assess_collisions(&self->collisions, a->collisions_path, &self->record,
                                       &self->types, &self->fleet, keep, a->strict, &self->results,

@@ -123,6 +123,7 @@ static cp_status write_rows(cp_assessment *self, const cp_plan_rows *plan, cp_er
         status = cp_result_rows_commit(store, &self->results, error);
     else if (status == CP_OK)
         cp_log_info("%s: holds these crashes already", self->request.db_path);
+    cp_store_finish(store);
     cp_store_close(store);
     return status;
 }

@@ -173,8 +173,8 @@ static cp_status assess_row(const cp_configuration_list *list, size_t number, co
         return status;
 
     // Role a is a car whose front is struck: the list's b where only its front is.
-    const cp_stand_in cars[2] = {{choice[swapped], *models[swapped]},
-                                 {choice[!swapped], *models[!swapped]}};
+    const cp_stand_in cars[2] = {{choice[swapped], *models[swapped], ""},
+                                 {choice[!swapped], *models[!swapped], ""}};
     cp_impact_names names = {.sumo_id = {id[swapped], id[!swapped]},
                              .sumo_type = {type[swapped], type[!swapped]}};
     for (int role = 0; role < 2; role++) {

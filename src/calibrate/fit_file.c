@@ -2,6 +2,7 @@
 #include "calibrate/fit_file.h"
 
 #include "calibrate/fit_schema.h"
+#include "core/array.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/output_files.h"
@@ -314,15 +315,11 @@ static cp_status check_folds(const cp_yaml_file *file, const char *key, size_t f
 // Remember a file that is read; name: as the fit file has it.
 static cp_status add_input(const cp_yaml_file *file, const char *name, cp_fit *fit, cp_error *error)
 {
-    char **larger = realloc(fit->input_path, (fit->input_count + 1) * sizeof *larger);
-    if (larger == NULL)
+    char **path = cp_array_add(fit->input_path, fit->input_count);
+    if (path == NULL)
         return cp_fail_memory(error, file->path);
-    fit->input_path = larger;
-    larger[fit->input_count] = cp_file_beside(file->path, name);
-    if (larger[fit->input_count] == NULL)
-        return cp_fail_memory(error, file->path);
-    fit->input_count++;
-    return CP_OK;
+    *path = cp_file_beside(file->path, name);
+    return *path != NULL ? CP_OK : cp_fail_memory(error, file->path);
 }
 
 static cp_status list_inputs(const cp_yaml_file *file, const cp_yaml_fit *yaml, cp_fit *fit,

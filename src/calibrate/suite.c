@@ -26,6 +26,9 @@ static void destroy_class(cp_suite_class *class)
     free(class->overlaps_1.value);
     free(class->sides_1.value);
     free(class->angles_deg.value);
+    free(class->struck_speeds_km_h.value);
+    free(class->at_mm.value);
+    free(class->struck_forces_1.value);
     destroy_texts(&class->rows_with);
     destroy_texts(&class->vehicles);
     destroy_texts(&class->against);

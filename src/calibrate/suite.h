@@ -53,7 +53,8 @@ typedef struct cp_suite_comparison {
     X(CP_SUITE_OLC, "olc")                                                                         \
     X(CP_SUITE_SEPARATION, "separation")                                                           \
     X(CP_SUITE_OBLIQUE, "oblique")                                                                 \
-    X(CP_SUITE_RECONSTRUCTED, "reconstructed")
+    X(CP_SUITE_RECONSTRUCTED, "reconstructed")                                                     \
+    X(CP_SUITE_STRUCK, "reconstructed_struck")
 typedef enum cp_suite_form {
 #define CP_SUITE_FORM_NAME(name, text) name,
     CP_SUITE_FORMS(CP_SUITE_FORM_NAME)
@@ -77,7 +78,15 @@ typedef struct cp_suite_class {
     cp_suite_numbers angles_deg;
     bool has_barrier;
     cp_barrier barrier;
-    cp_suite_texts against;          /* "same", shipped names or paths; empty: barrier only */
+    /* The vehicle is struck on a side (sides_1) or its rear by the front of against or the barrier,
+     * which drives at speeds_km_h. */
+    bool is_struck;
+    bool is_struck_on_rear;
+    cp_suite_numbers struck_speeds_km_h; /* own, one a speed; empty: it stands */
+    cp_suite_numbers at_mm;           /* where the middle of what strikes meets it, x on a side, y
+                                       * on the rear, from its centre of gravity; empty: 0 */
+    cp_suite_numbers struck_forces_1; /* times the forces of its side and rear; empty: 1 */
+    cp_suite_texts against;           /* "same", shipped names or paths; empty: barrier only */
     cp_suite_comparison *comparison; /* owned */
     size_t comparison_count;
 } cp_suite_class;

@@ -198,7 +198,8 @@ static cp_status read_table(const place *at, const cp_suite_yaml_table *yaml, cp
     while (form < CP_SUITE_FORM_COUNT && strcmp(yaml->form, FORM[form]) != 0)
         form++;
     if (form == CP_SUITE_FORM_COUNT)
-        return fail_at(at, "table.form", "must be olc, separation, oblique or reconstructed",
+        return fail_at(at, "table.form",
+                       "must be olc, separation, oblique, reconstructed or reconstructed_struck",
                        yaml->form);
     if ((yaml->file == NULL) == (yaml->references_file == NULL))
         return fail_at(at, "table", "needs either file or references_file", NULL);
@@ -208,9 +209,12 @@ static cp_status read_table(const place *at, const cp_suite_yaml_table *yaml, cp
                                             : cp_file_beside(at->file->path, yaml->file);
     if (class->table_path == NULL)
         return cp_fail_memory(at->error, at->file->path);
-    if ((form == CP_SUITE_SEPARATION) != (yaml->rows_with_count > 0))
+    bool chosen = form == CP_SUITE_SEPARATION || form == CP_SUITE_STRUCK;
+    if (chosen != (yaml->rows_with_count > 0))
         return fail_at(at, "table.rows_with",
-                       "names the barriers of form separation, and of no other", NULL);
+                       "names the barriers of form separation or the sides of form "
+                       "reconstructed_struck, and goes with no other",
+                       NULL);
     return copy_texts(at, yaml->rows_with, yaml->rows_with_count, &class->rows_with);
 }
 
@@ -227,32 +231,73 @@ static cp_status read_barrier(const place *at, const cp_suite_yaml_barrier *yaml
     if (status == CP_OK)
         status = read_number(at, "barrier.depth_m", yaml->depth_m, 0.2, 20, &barrier->depth_m);
     double largest_m = 0.5 * fmin(barrier->width_m, barrier->depth_m);
-    return status == CP_OK ? read_number(at, "barrier.corner_radius_m", yaml->corner_radius_m, 0,
-                                         largest_m, &barrier->corner_radius_m)
-                           : status;
+    const struct {
+        const char *key;
+        const char *text;
+        double smallest;
+        double largest;
+        double *value;
+    } fields[] = {
+        {"barrier.corner_radius_m", yaml->corner_radius_m, 0.0, largest_m,
+         &barrier->corner_radius_m},
+        {"barrier.mass_kg", yaml->mass_kg, 0.0, 1e5, &barrier->mass_kg},
+        {"barrier.yaw_inertia_kg_m2", yaml->yaw_inertia_kg_m2, 50.0, 1e6,
+         &barrier->yaw_inertia_kg_m2},
+        {"barrier.face_m", yaml->face_m, 0.0, 2.0, &barrier->face_m},
+        {"barrier.face_kn", yaml->face_kn, 5.0, 5000.0, &barrier->face_kn},
+        {"barrier.face_bumper_m", yaml->face_bumper_m, 0.0, 1.0, &barrier->face_bumper_m},
+        {"barrier.face_bumper_kn", yaml->face_bumper_kn, 5.0, 5000.0, &barrier->face_bumper_kn}};
+    for (size_t k = 0; status == CP_OK && k < sizeof fields / sizeof *fields; k++)
+        status = read_number(at, fields[k].key, fields[k].text, fields[k].smallest,
+                             fields[k].largest, fields[k].value);
+    cp_error problem = {0};
+    if (status == CP_OK && cp_barrier_validate(barrier, &problem) != CP_OK)
+        status = fail_at(at, "barrier", problem.text, NULL);
+    return status;
+}
+
+// Evenly from one value to another.
+static cp_status spread(const place *at, const char *key, const char *count_text, double from,
+                        double to, cp_suite_numbers *numbers)
+{
+    char path[64];
+    double count = 0.0;
+    snprintf(path, sizeof path, "%s.count", key);
+    cp_status status = read_number(at, path, count_text, 2, CP_SUITE_LIST_MAX, &count);
+    if (status == CP_OK && count != floor(count))
+        status = fail_at(at, path, "must be a whole number", count_text);
+    if (status == CP_OK && numbers->count > 0)
+        status = fail_at(at, key, "does not go with a list of the same", NULL);
+    if (status != CP_OK)
+        return status;
+    numbers->value = calloc((size_t)count, sizeof *numbers->value);
+    if (numbers->value == NULL)
+        return cp_fail_memory(at->error, at->file->path);
+    numbers->count = (size_t)count;
+    for (size_t k = 0; k < numbers->count; k++)
+        numbers->value[k] = from + (to - from) * (double)k / (count - 1.0);
+    return CP_OK;
 }
 
 static cp_status read_sweep(const place *at, const cp_suite_yaml_sweep *yaml, cp_suite_class *class)
 {
-    double from_1 = 0.0, to_1 = 0.0, count = 0.0;
+    double from_1 = 0.0, to_1 = 0.0;
     cp_status status = read_number(at, "overlap_sweep.from_1", yaml->from_1, 0.001, 1.0, &from_1);
     if (status == CP_OK)
         status = read_number(at, "overlap_sweep.to_1", yaml->to_1, 0.001, 1.0, &to_1);
+    return status == CP_OK
+               ? spread(at, "overlap_sweep", yaml->count, from_1, to_1, &class->overlaps_1)
+               : status;
+}
+
+static cp_status read_places(const place *at, const cp_suite_yaml_places *yaml, cp_suite_class *class)
+{
+    double from_mm = 0.0, to_mm = 0.0;
+    cp_status status = read_number(at, "at_sweep.from_mm", yaml->from_mm, -8000, 8000, &from_mm);
     if (status == CP_OK)
-        status = read_number(at, "overlap_sweep.count", yaml->count, 2, CP_SUITE_LIST_MAX, &count);
-    if (status == CP_OK && count != floor(count))
-        status = fail_at(at, "overlap_sweep.count", "must be a whole number", yaml->count);
-    if (status == CP_OK && class->overlaps_1.count > 0)
-        status = fail_at(at, "overlap_sweep", "does not go with overlaps_1", NULL);
-    if (status != CP_OK)
-        return status;
-    class->overlaps_1.value = calloc((size_t)count, sizeof *class->overlaps_1.value);
-    if (class->overlaps_1.value == NULL)
-        return cp_fail_memory(at->error, at->file->path);
-    class->overlaps_1.count = (size_t)count;
-    for (size_t k = 0; k < class->overlaps_1.count; k++)
-        class->overlaps_1.value[k] = from_1 + (to_1 - from_1) * (double)k / (count - 1.0);
-    return CP_OK;
+        status = read_number(at, "at_sweep.to_mm", yaml->to_mm, -8000, 8000, &to_mm);
+    return status == CP_OK ? spread(at, "at_sweep", yaml->count, from_mm, to_mm, &class->at_mm)
+                           : status;
 }
 
 // "left" and "right" into +1 and -1.
@@ -272,6 +317,42 @@ static cp_status read_sides(const place *at, const cp_suite_yaml_class *yaml, cp
     return CP_OK;
 }
 
+static cp_status read_struck(const place *at, const cp_suite_yaml_class *yaml, cp_suite_class *class)
+{
+    class->is_struck = yaml->struck != NULL;
+    class->is_struck_on_rear = class->is_struck && strcmp(yaml->struck, "rear") == 0;
+    if (class->is_struck && !class->is_struck_on_rear && strcmp(yaml->struck, "side") != 0)
+        return fail_at(at, "struck", "must be side or rear", yaml->struck);
+    cp_status status =
+        read_numbers(at, "struck_speeds_km_h", yaml->struck_speeds_km_h,
+                     yaml->struck_speeds_km_h_count, 0, 300, &class->struck_speeds_km_h);
+    if (status == CP_OK)
+        status =
+            read_numbers(at, "at_mm", yaml->at_mm, yaml->at_mm_count, -8000, 8000, &class->at_mm);
+    if (status == CP_OK)
+        status = read_numbers(at, "struck_forces_1", yaml->struck_forces_1,
+                              yaml->struck_forces_1_count, 0.2, 3.0, &class->struck_forces_1);
+    if (status == CP_OK && yaml->at_sweep != NULL)
+        status = read_places(at, yaml->at_sweep, class);
+    if (status != CP_OK)
+        return status;
+    bool about_struck =
+        class->struck_speeds_km_h.count + class->at_mm.count + class->struck_forces_1.count > 0;
+    if (!class->is_struck && about_struck)
+        return fail_at(at, "struck",
+                       "is missing: struck_speeds_km_h, at_mm and struck_forces_1 "
+                       "need it",
+                       NULL);
+    if (class->struck_speeds_km_h.count > 0 &&
+        class->struck_speeds_km_h.count != class->speeds_km_h.count)
+        return fail_at(at, "struck_speeds_km_h", "needs one for each of speeds_km_h", NULL);
+    if (class->is_struck && (class->overlaps_1.count > 0 || class->form != CP_SUITE_LISTS))
+        return fail_at(at, "struck", "does not go with overlaps or a table", NULL);
+    if (class->is_struck && (class->against.count > 0) == class->has_barrier)
+        return fail_at(at, "struck", "needs against or barrier, one of the two", NULL);
+    return CP_OK;
+}
+
 static cp_status read_lists(const place *at, const cp_suite_yaml_class *yaml, cp_suite_class *class)
 {
     cp_status status = read_numbers(at, "speeds_km_h", yaml->speeds_km_h, yaml->speeds_km_h_count,
@@ -288,7 +369,9 @@ static cp_status read_lists(const place *at, const cp_suite_yaml_class *yaml, cp
                               &class->angles_deg);
     if (status == CP_OK && yaml->overlap_sweep != NULL)
         status = read_sweep(at, yaml->overlap_sweep, class);
-    return status == CP_OK ? read_sides(at, yaml, class) : status;
+    if (status == CP_OK)
+        status = read_sides(at, yaml, class);
+    return status == CP_OK ? read_struck(at, yaml, class) : status;
 }
 
 // That the class says what meets what, and nothing that its table says.
@@ -310,8 +393,12 @@ static cp_status check_class(const place *at, const cp_suite_yaml_class *yaml,
         return fail_at(at, "barrier", "is missing: a class needs barrier, against or both", NULL);
     if (class->form == CP_SUITE_SEPARATION && !class->has_barrier)
         return fail_at(at, "barrier", "is missing: form separation needs it", NULL);
+    bool party = class->is_struck || (class->has_barrier && cp_barrier_is_party(&class->barrier));
+    if (pair && !class->is_struck && party)
+        return fail_at(at, "barrier", "with a mass or a face does not go with against", NULL);
     if (class->opponent_speeds_km_h.count > 0 &&
-        (!pair || class->opponent_speeds_km_h.count != class->speeds_km_h.count))
+        (!(pair || party) || class->is_struck ||
+         class->opponent_speeds_km_h.count != class->speeds_km_h.count))
         return fail_at(at, "opponent_speeds_km_h", "needs against, and one for each of speeds_km_h",
                        NULL);
     for (size_t c = 0; c < class->comparison_count; c++) {
@@ -319,15 +406,16 @@ static cp_status check_class(const place *at, const cp_suite_yaml_class *yaml,
         bool of_pair = cp_suite_quantity_is_of_pair(quantity);
         char key[64];
         snprintf(key, sizeof key, "compare[%zu].quantity", c);
-        bool of_tests = class->form == CP_SUITE_OBLIQUE || class->form == CP_SUITE_RECONSTRUCTED;
-        bool have_pair = pair || of_tests;
-        if (class->comparison[c].car > 0 && !of_tests)
-            return fail_at(at, key, "of one car goes with a table of pairs",
+        bool of_tests = class->form == CP_SUITE_OBLIQUE || class->form == CP_SUITE_RECONSTRUCTED ||
+                        class->form == CP_SUITE_STRUCK;
+        bool have_pair = pair || of_tests || party;
+        if (class->comparison[c].car > 0 && !of_tests && !party)
+            return fail_at(at, key, "of one car goes with struck or a table of pairs",
                            CP_SUITE_QUANTITY_TEXT[quantity]);
         if (of_pair && !have_pair)
             return fail_at(at, key, "needs a second car (against)",
                            CP_SUITE_QUANTITY_TEXT[quantity]);
-        if (quantity == CP_SUITE_wall_difference_pct && !class->has_barrier)
+        if (quantity == CP_SUITE_wall_difference_pct && (!class->has_barrier || party))
             return fail_at(at, key, "needs a barrier too", CP_SUITE_QUANTITY_TEXT[quantity]);
     }
     return CP_OK;

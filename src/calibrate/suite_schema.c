@@ -43,7 +43,14 @@ static const cyaml_schema_value_t COMPARISON_VALUE = {
 
 static const cyaml_schema_field_t BARRIER_FIELDS[] = {
     TEXT(width_m, cp_suite_yaml_barrier), TEXT(depth_m, cp_suite_yaml_barrier),
-    TEXT(corner_radius_m, cp_suite_yaml_barrier), CYAML_FIELD_END};
+    TEXT(corner_radius_m, cp_suite_yaml_barrier),
+    OPTIONAL_TEXT(mass_kg, cp_suite_yaml_barrier),
+    OPTIONAL_TEXT(yaw_inertia_kg_m2, cp_suite_yaml_barrier),
+    OPTIONAL_TEXT(face_m, cp_suite_yaml_barrier),
+    OPTIONAL_TEXT(face_kn, cp_suite_yaml_barrier),
+    OPTIONAL_TEXT(face_bumper_m, cp_suite_yaml_barrier),
+    OPTIONAL_TEXT(face_bumper_kn, cp_suite_yaml_barrier),
+    CYAML_FIELD_END};
 
 static const cyaml_schema_field_t TABLE_FIELDS[] = {
     TEXT(form, cp_suite_yaml_table), OPTIONAL_TEXT(file, cp_suite_yaml_table),
@@ -53,6 +60,10 @@ static const cyaml_schema_field_t TABLE_FIELDS[] = {
 static const cyaml_schema_field_t SWEEP_FIELDS[] = {
     TEXT(from_1, cp_suite_yaml_sweep), TEXT(to_1, cp_suite_yaml_sweep),
     TEXT(count, cp_suite_yaml_sweep), CYAML_FIELD_END};
+
+static const cyaml_schema_field_t PLACES_FIELDS[] = {
+    TEXT(from_mm, cp_suite_yaml_places), TEXT(to_mm, cp_suite_yaml_places),
+    TEXT(count, cp_suite_yaml_places), CYAML_FIELD_END};
 
 static const cyaml_schema_field_t CLASS_FIELDS[] = {
     CYAML_FIELD_STRING_PTR("class", CYAML_FLAG_POINTER, cp_suite_yaml_class, name, 0,
@@ -67,6 +78,11 @@ static const cyaml_schema_field_t CLASS_FIELDS[] = {
     OPTIONAL_MAPPING(overlap_sweep, cp_suite_yaml_class, SWEEP_FIELDS),
     OPTIONAL_LIST(sides, cp_suite_yaml_class),
     OPTIONAL_LIST(angles_deg, cp_suite_yaml_class),
+    OPTIONAL_TEXT(struck, cp_suite_yaml_class),
+    OPTIONAL_LIST(struck_speeds_km_h, cp_suite_yaml_class),
+    OPTIONAL_LIST(at_mm, cp_suite_yaml_class),
+    OPTIONAL_MAPPING(at_sweep, cp_suite_yaml_class, PLACES_FIELDS),
+    OPTIONAL_LIST(struck_forces_1, cp_suite_yaml_class),
     OPTIONAL_MAPPING(barrier, cp_suite_yaml_class, BARRIER_FIELDS),
     OPTIONAL_LIST(against, cp_suite_yaml_class),
     CYAML_FIELD_SEQUENCE("compare", CYAML_FLAG_POINTER, cp_suite_yaml_class, compare,

@@ -38,6 +38,12 @@ typedef struct cp_suite_yaml_barrier {
     char *width_m;
     char *depth_m;
     char *corner_radius_m;
+    char *mass_kg;
+    char *yaw_inertia_kg_m2;
+    char *face_m;
+    char *face_kn;
+    char *face_bumper_m;
+    char *face_bumper_kn;
 } cp_suite_yaml_barrier;
 
 typedef struct cp_suite_yaml_table {
@@ -53,6 +59,12 @@ typedef struct cp_suite_yaml_sweep {
     char *to_1;
     char *count;
 } cp_suite_yaml_sweep;
+
+typedef struct cp_suite_yaml_places {
+    char *from_mm;
+    char *to_mm;
+    char *count;
+} cp_suite_yaml_places;
 
 typedef struct cp_suite_yaml_class {
     char *name;
@@ -72,6 +84,14 @@ typedef struct cp_suite_yaml_class {
     unsigned sides_count;
     char **angles_deg;
     unsigned angles_deg_count;
+    char *struck;
+    char **struck_speeds_km_h;
+    unsigned struck_speeds_km_h_count;
+    char **at_mm;
+    unsigned at_mm_count;
+    cp_suite_yaml_places *at_sweep;
+    char **struck_forces_1;
+    unsigned struck_forces_1_count;
     cp_suite_yaml_barrier *barrier;
     char **against;
     unsigned against_count;

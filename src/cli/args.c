@@ -52,6 +52,31 @@ static const struct argp_option FORMAT_OPTIONS[] = {
 
 const struct argp CP_ARGS_FORMAT = {.options = FORMAT_OPTIONS, .parser = parse_format};
 
+void cp_args_need(struct argp_state *state, bool is_there, const char *missing)
+{
+    if (!is_there)
+        argp_error(state, "%s is missing", missing);
+}
+
+static error_t parse_input(int key, char *argument, struct argp_state *state)
+{
+    cp_args_input *input = state->input;
+    switch (key) {
+    case ARGP_KEY_ARG:
+        if (input->path != NULL)
+            argp_error(state, "one %s at a time, found '%s' too", input->one, argument);
+        input->path = argument;
+        return 0;
+    case ARGP_KEY_END:
+        cp_args_need(state, input->path != NULL || input->missing == NULL, input->missing);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const struct argp CP_ARGS_INPUT = {.parser = parse_input};
+
 // ---- words before argp sees them -----------------------------------------------------------
 
 static void no_memory(void)

@@ -87,19 +87,22 @@ static const struct argp_option OPTIONS[] = {
     {0},
 };
 
+static void check_raw(const arguments *a, struct argp_state *state)
+{
+    cp_args_need(state, !a->raw || a->pulse_path != NULL,
+                 "--raw is about the pulse file: --pulse FILE.csv");
+}
+
 // A stored crash brings all with it.
 static void check_stored(const arguments *a, struct argp_state *state)
 {
-    if (a->crash_id < 0)
-        argp_error(state, "which crash? --crash ID is missing");
-    if (!a->from_path)
-        argp_error(state, "--crash is about a database: --from DB is missing");
+    cp_args_need(state, a->crash_id >= 0, "which crash? --crash ID");
+    cp_args_need(state, a->from_path != NULL, "--crash is about a database: --from DB");
     if (a->vehicle_path || a->opponent_path || a->described || a->samples > 0 ||
         a->overlay_vehicle_path || a->overlay_opponent_path)
         argp_error(state, "--from takes vehicles, speeds and all else from the database; only "
                           "--treatment, --pulse, --raw, --animate and --format go with it");
-    if (a->raw && !a->pulse_path)
-        argp_error(state, "--raw is about the pulse file: --pulse FILE.csv is missing");
+    check_raw(a, state);
 }
 
 static void check(const arguments *a, struct argp_state *state)
@@ -108,20 +111,16 @@ static void check(const arguments *a, struct argp_state *state)
         check_stored(a, state);
         return;
     }
-    if (!a->vehicle_path)
-        argp_error(state, "which vehicle? VEHICLE is missing");
-    if (isnan(a->speed_km_h))
-        argp_error(state, "how fast? --speed KMH is missing");
+    cp_args_need(state, a->vehicle_path != NULL, "which vehicle? VEHICLE");
+    cp_args_need(state, !isnan(a->speed_km_h), "how fast? --speed KMH");
     bool overlay = a->overlay_vehicle_path || a->overlay_opponent_path;
     bool overlay_car = a->overlay_opponent_path && strcmp(a->overlay_opponent_path, "barrier") != 0;
     if (!a->opponent_path && !overlay_car && !isnan(a->opponent_speed_km_h))
         argp_error(state, "--opponent-speed needs an opponent: --against VEHICLE");
-    if (overlay && !a->animation_path)
-        argp_error(state, "an overlay is drawn in the animation: --animate FILE.html is missing");
-    if (a->seed >= 0 && a->samples == 0)
-        argp_error(state, "--seed is about samples: --samples N is missing");
-    if (a->raw && !a->pulse_path)
-        argp_error(state, "--raw is about the pulse file: --pulse FILE.csv is missing");
+    cp_args_need(state, !overlay || a->animation_path != NULL,
+                 "an overlay is drawn in the animation: --animate FILE.html");
+    cp_args_need(state, a->seed < 0 || a->samples > 0, "--seed is about samples: --samples N");
+    check_raw(a, state);
 }
 
 // Options about what to make of the crash.

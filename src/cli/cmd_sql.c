@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 typedef struct arguments {
-    const char *db_path;
+    cp_args_input input;
     const char *query;
     cp_format format;
 } arguments;
@@ -25,22 +25,22 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &a->format;
+        state->child_inputs[1] = &a->input;
         return 0;
     case ARGP_KEY_ARG:
-        if (a->query)
+        if (a->input.path == NULL)
+            return ARGP_ERR_UNKNOWN;
+        if (a->query != NULL)
             argp_error(state, "one query at a time, found '%s' too", argument);
-        *(a->db_path ? &a->query : &a->db_path) = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!a->db_path)
-            argp_error(state, "which database? DB is missing");
+        a->query = argument;
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
 
-static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+static const struct argp_child CHILDREN[] = {
+    {&CP_ARGS_FORMAT, 0, NULL, 0}, {&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .parser = parse,
@@ -121,12 +121,12 @@ static cp_status print_query(cp_store *store, const arguments *a, cp_error *erro
 
 cp_status cmd_sql(int argc, char **argv, cp_error *error)
 {
-    arguments a = {0};
+    arguments a = {.input = CP_ARGS_DATABASE};
     cp_args_parse(&ARGP, argc, argv, &a);
 
     // Opened in both cases: a file that is no study's database is refused with one clear message.
     cp_store *store = NULL;
-    cp_status status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+    cp_status status = cp_store_open(a.input.path, CP_STORE_READ, &store, error);
     if (status != CP_OK)
         return status;
     char extension[PATH_MAX];
@@ -136,5 +136,5 @@ cp_status cmd_sql(int argc, char **argv, cp_error *error)
     if (a.query && status == CP_OK)
         status = print_query(store, &a, error);
     cp_store_close(store);
-    return a.query ? status : start_shell(a.db_path, extension, a.format, error);
+    return a.query ? status : start_shell(a.input.path, extension, a.format, error);
 }

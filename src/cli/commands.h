@@ -20,6 +20,8 @@ CP_MUST_CHECK cp_status cmd_sql(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_status(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_merge(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_submit(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_export(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_pulse(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_check(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_crash(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_validate(int argc, char **argv, cp_error *error);

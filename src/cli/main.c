@@ -32,8 +32,10 @@ static const command COMMAND[] = {
     {"report", cmd_report, "write the comparison as one HTML file with figures"},
     {"plot", cmd_plot, "draw one figure for a paper, as SVG or PDF"},
     {"sql", cmd_sql, "ask the database"},
+    {"export", cmd_export, "write crashes and pulses in the formats of other programs"},
     {"check", cmd_check, "see whether a database is whole"},
     {"crash", cmd_crash, "simulate one crash, against a barrier or another car"},
+    {"pulse", cmd_pulse, "compute OLC, delta-v and the other figures of any pulse"},
     {"validate", cmd_validate, "hold a vehicle model against reference OLC values"},
     {"calibrate", cmd_calibrate, "fit a vehicle model to reference OLC values"},
 };

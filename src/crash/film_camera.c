@@ -139,7 +139,8 @@ static void take_parts(const cp_car *car, cp_film_car *seen)
     // In the plane of the simulation so far; now from the car itself.
     cp_body_state cog = cp_car_cog_state(car);
     for (int k = 0; k < CP_FILM_PART_COUNT; k++)
-        seen->part[k] = seen_from((cp_pose){cog.cog_m, cog.yaw_rad}, seen->part[k]);
+        if (!car->model->is_barrier || k == CP_FILM_BODY) // a barrier has no other parts
+            seen->part[k] = seen_from((cp_pose){cog.cog_m, cog.yaw_rad}, seen->part[k]);
 }
 
 // ---- frames ----------------------------------------------------------------------------------

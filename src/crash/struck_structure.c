@@ -74,8 +74,8 @@ void cp_struck_build(cp_car *car, double firewall_m, double rear_m)
     body->radius_m = fmin(body->radius_m, fmin(body->half_length_m, body->half_width_m));
 }
 
-// Half of the spread is there where something presses a third of that inside the nearer end.
-static const double SPREAD_RISE_1 = 3.0;
+// Half of the spread is there where something presses a sixth of that inside the nearer end.
+static const double SPREAD_RISE_1 = 6.0;
 
 // Where a face yields, along its own left; nothing pressed on: from > to.
 typedef struct stretch {
@@ -95,9 +95,10 @@ static void cover_side(cp_car *car, int side, stretch yields)
     double half_m = car->outline[CP_OUTLINE_BLOCKS + car->struck_block + side].half_width_m;
     double from_m = half_m + (side == LEFT ? yields.from_m : -yields.to_m);
     double to_m = half_m + (side == LEFT ? yields.to_m : -yields.from_m);
-    double begin_m = 0.0, covered_m = 0.0, *width_m = car->zone_width_m[side];
+    double begin_m = -INFINITY, covered_m = 0.0, *width_m = car->zone_width_m[side];
     for (int z = 0; z < CP_SIDE_ZONES; z++) {
-        double end_m = car->zone_end_m[z];
+        // Beyond its ends the side goes on in what holds it there.
+        double end_m = z + 1 < CP_SIDE_ZONES ? car->zone_end_m[z] : (double)INFINITY;
         width_m[z] = fmax(0.0, fmin(to_m, end_m) - fmax(from_m, begin_m));
         covered_m += width_m[z];
         begin_m = end_m;

@@ -11,10 +11,10 @@
  * A side is one face with three zones from the firewall to the rear structure: front wheel, door
  * with B-pillar, rear wheel. Its force at a depth is the sum over the zones of their force on a
  * metre times their width that yields: the width that is pressed on and half of side_spread_m to
- * either side (sill and roof rail carry it on), less near the ends of the side, where only as much
- * lies there. So what presses on the border of two zones meets a mean of both, by width, and
- * nothing jumps there. In front of the firewall lies the outboard corner of the front, which is
- * pushed aside by its own law; it counts as the front wheel's zone.
+ * either side (sill and roof rail carry it on, at the ends what holds them), less where it is only
+ * pressed on near an end. So what presses on the border of two zones meets a mean of both, by
+ * width, and nothing jumps there. In front of the firewall lies the outboard corner of the front,
+ * which is pushed aside by its own law; it counts as the front wheel's zone.
  *
  * The rear is one face over the whole width: what presses on a share of it (and rear_spread_m)
  * meets that share of its force. From the side it is pushed aside as a whole. */

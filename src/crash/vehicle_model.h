@@ -13,11 +13,11 @@
  * of gravity or as named. X(field, unit, default, smallest, largest, what it is). The defaults are
  * a mid-size car (first parameter set, not fitted). */
 #define CP_VEHICLE_PARAMETERS(X)                                                                   \
-    X(mass_kg, "kg", 1640, 500, 5000, "whole car as it crashes, occupants included")               \
-    X(yaw_inertia_kg_m2, "kg m2", 2700, 500, 12000, "whole car about its centre of gravity")       \
-    X(length_m, "m", 4.86, 2.5, 8.0, "bumper to bumper")                                           \
-    X(width_m, "m", 1.85, 1.3, 2.6, "without mirrors")                                             \
-    X(cg_to_front_m, "m", 2.05, 0.8, 4.5, "centre of gravity to front bumper")                     \
+    X(mass_kg, "kg", 1640, 500, 60000, "whole car as it crashes, occupants included")              \
+    X(yaw_inertia_kg_m2, "kg m2", 2700, 500, 2500000, "whole car about its centre of gravity")     \
+    X(length_m, "m", 4.86, 2.5, 26.0, "bumper to bumper")                                          \
+    X(width_m, "m", 1.85, 1.3, 2.7, "without mirrors")                                             \
+    X(cg_to_front_m, "m", 2.05, 0.8, 12, "centre of gravity to front bumper")                      \
     X(longitudinal_y_m, "m", 0.47, 0.3, 0.7,                                                       \
       "middle of a longitudinal member from the centre line")                                      \
     X(longitudinal_length_m, "m", 0.62, 0.3, 1.0, "longitudinal member, hinge to crash box")       \
@@ -107,16 +107,16 @@
     X(side_front_wheel_1, "1", 0.15, 0.02, 0.45,                                                   \
       "share of the side, firewall to rear structure, that is the front wheel's zone")             \
     X(side_rear_wheel_1, "1", 0.25, 0.02, 0.45, "likewise the rear wheel's; between: the door's")  \
-    X(side_front_wheel_begin_kn_m, "kN/m", 50, 2, 2000,                                            \
+    X(side_front_wheel_begin_kn_m, "kN/m", 25, 2, 2000,                                            \
       "force on a metre of the front wheel's zone where collapse begins")                          \
-    X(side_front_wheel_end_kn_m, "kN/m", 300, 2, 4000, "the same where nothing is left")           \
-    X(side_door_begin_kn_m, "kN/m", 25, 2, 2000,                                                   \
+    X(side_front_wheel_end_kn_m, "kN/m", 220, 2, 4000, "the same where nothing is left")           \
+    X(side_door_begin_kn_m, "kN/m", 18, 2, 2000,                                                   \
       "force on a metre of door and B-pillar where collapse begins")                               \
-    X(side_door_end_kn_m, "kN/m", 220, 2, 4000, "the same where nothing is left")                  \
-    X(side_rear_wheel_begin_kn_m, "kN/m", 40, 2, 2000,                                             \
+    X(side_door_end_kn_m, "kN/m", 160, 2, 4000, "the same where nothing is left")                  \
+    X(side_rear_wheel_begin_kn_m, "kN/m", 22, 2, 2000,                                             \
       "force on a metre of the rear wheel's zone where collapse begins")                           \
-    X(side_rear_wheel_end_kn_m, "kN/m", 260, 2, 4000, "the same where nothing is left")            \
-    X(side_spread_m, "m", 1.4, 0.05, 3,                                                            \
+    X(side_rear_wheel_end_kn_m, "kN/m", 180, 2, 4000, "the same where nothing is left")            \
+    X(side_spread_m, "m", 1.8, 0.05, 3,                                                            \
       "how much wider than what presses on it the side yields: sill, roof rail, pillars")          \
     X(rear_bumper_m, "m", 0.06, 0.005, 0.3, "travel of the rear bumper")                           \
     X(rear_bumper_kn, "kN", 60, 2, 800, "force of the rear bumper over its travel, whole width")   \

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact/detector.h"
 
+#include "core/array.h"
 #include "impact/approach.h"
-#include "impact/array.h"
 #include "impact/broad_phase.h"
 #include "impact/confirmation.h"
 #include "impact/footprint.h"

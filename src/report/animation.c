@@ -124,7 +124,7 @@ static json_t *severity_json(const cp_animated_run *run, int role)
     double olc_g = frontal ? s->olc.olc_g : NAN;
     char text[CP_VALIDITY_TEXT_SIZE];
     unsigned outside =
-        cp_validity(run->model[0], run->model[1], run->configuration, run->description, role);
+        cp_validity(run->model[0], run->model[1], run->configuration, run->description, role, NULL);
     return json_pack("{s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "contact_side",
                      cp_contact_side_text(run->configuration->side[role]), "validity",
                      cp_validity_text(outside, text), "olc_status", cp_olc_status_text(olc_status),

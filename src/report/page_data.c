@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/page_data.h"
 
+#include "analysis/any_vehicle.h"
 #include "analysis/caveats.h"
 #include "analysis/comparison.h"
 #include "analysis/network_background.h"
@@ -121,15 +122,12 @@ static json_t *vehicles_json(const cp_study_data *data, const bool *drawn)
     }
     // Those of the replications, then what the treatments made of crashes of the baseline; these
     // stand in the scenario and under the type of the baseline's crash.
-    for (size_t k = 0; k < data->vehicle_count + data->treated_count; k++) {
-        bool treated = k >= data->vehicle_count;
-        const cp_study_treated *t = treated ? &data->treated[k - data->vehicle_count] : NULL;
-        const cp_study_vehicle *v = treated ? &t->vehicle : &data->vehicle[k];
-        const cp_study_crash *crash = &data->crash[v->crash];
+    for (size_t k = 0; k < cp_any_vehicle_count(data); k++) {
+        cp_any_vehicle any = cp_any_vehicle_at(data, k);
+        const cp_study_vehicle *v = any.vehicle;
         if (!v->frontal || !drawn[v->crash])
             continue;
-        const cp_study_replication *r = &data->replication[crash->replication];
-        const size_t index[] = {treated ? t->variant : r->variant, r->scenario, crash->crash_type,
+        const size_t index[] = {any.variant, any.replication->scenario, any.crash->crash_type,
                                 v->role == 'b', v->olc};
         const double number[] = {v->olc_g, cp_km_h_from_m_s(v->closing_speed_m_s),
                                  v->lateral_offset_m, cp_deg_from_rad(v->angle_rad)};
@@ -138,8 +136,8 @@ static json_t *vehicles_json(const cp_study_data *data, const bool *drawn)
         for (size_t c = OLC; c <= ANGLE; c++)
             json_array_append_new(column[c], cp_drawn_json(number[c - OLC]));
         json_array_append_new(column[VALIDITY], json_integer((json_int_t)v->validity));
-        json_array_append_new(column[X], cp_drawn_json(treated ? t->x_m : crash->x_m));
-        json_array_append_new(column[Y], cp_drawn_json(treated ? t->y_m : crash->y_m));
+        json_array_append_new(column[X], cp_drawn_json(any.x_m));
+        json_array_append_new(column[Y], cp_drawn_json(any.y_m));
     }
     return object;
 }
@@ -327,7 +325,7 @@ static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t b
                             cp_error *error)
 {
     p->slices = json_array();
-    p->chosen = calloc(data->vehicle_count + data->treated_count + 1, sizeof *p->chosen);
+    p->chosen = calloc(cp_any_vehicle_count(data) + 1, sizeof *p->chosen);
     p->drawn = calloc(data->crash_count + 1, sizeof *p->drawn);
     if (!p->slices || !p->chosen || !p->drawn)
         return cp_fail_memory(error, "the data of a report");

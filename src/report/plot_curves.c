@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/plot_data.h"
 
+#include "analysis/any_vehicle.h"
 #include "analysis/convergence.h"
 #include "analysis/corridor.h"
 #include "analysis/slice_sample.h"
@@ -161,23 +162,17 @@ static void put_corridor(cp_plot *p, size_t variant, const cp_corridor *c)
 // Marks the vehicles of a variant, the study's own and then the treated ones.
 static void choose_vehicles(const cp_plot *p, size_t variant, unsigned char *chosen)
 {
-    const cp_study_data *data = p->data;
-    for (size_t k = 0; k < data->vehicle_count; k++) {
-        const cp_study_crash *crash = &data->crash[data->vehicle[k].crash];
-        chosen[k] = data->replication[crash->replication].variant == variant &&
-                    cp_plot_has_vehicle(p, &data->vehicle[k], k);
+    for (size_t k = 0; k < cp_any_vehicle_count(p->data); k++) {
+        cp_any_vehicle v = cp_any_vehicle_at(p->data, k);
+        chosen[k] =
+            v.variant == variant && cp_plot_has_vehicle(p, v.vehicle, v.treated ? SIZE_MAX : k);
     }
-    for (size_t k = 0; k < data->treated_count; k++)
-        chosen[data->vehicle_count + k] =
-            data->treated[k].variant == variant &&
-            cp_plot_has_vehicle(p, &data->treated[k].vehicle, SIZE_MAX);
 }
 
 cp_status cp_plot_corridor(cp_plot *p, cp_error *error)
 {
     cp_corridor_pulses pulses = {0};
-    size_t vehicles = p->data->vehicle_count + p->data->treated_count;
-    unsigned char *chosen = calloc(vehicles + 1, sizeof *chosen);
+    unsigned char *chosen = calloc(cp_any_vehicle_count(p->data) + 1, sizeof *chosen);
     size_t *variant = calloc(p->data->variant_count + 1, sizeof *variant);
     cp_status status = chosen && variant ? CP_OK : cp_fail_memory(error, "a figure");
     if (status == CP_OK)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/slice_curves.h"
 
+#include "analysis/any_vehicle.h"
 #include "analysis/convergence.h"
 #include "analysis/judged.h"
 #include "analysis/query_json.h"
@@ -59,11 +60,6 @@ static cp_status add_distributions(const cp_slice_curves *e, cp_slice slice, siz
     return status;
 }
 
-static size_t variant_of(const cp_study_data *data, const cp_study_vehicle *v)
-{
-    return data->replication[data->crash[v->crash].replication].variant;
-}
-
 static json_t *points_json(const double *g, size_t count)
 {
     json_t *points = json_array();
@@ -78,14 +74,11 @@ static cp_status add_corridor(const cp_slice_curves *e, cp_slice slice, size_t v
                               json_t *object, cp_error *error)
 {
     const cp_study_data *data = e->data;
-    for (size_t k = 0; k < data->vehicle_count + data->treated_count; k++) {
-        bool treated = k >= data->vehicle_count;
-        const cp_study_treated *t = treated ? &data->treated[k - data->vehicle_count] : NULL;
-        const cp_study_vehicle *v = treated ? &t->vehicle : &data->vehicle[k];
-        size_t own = treated ? t->variant : variant_of(data, v);
-        e->chosen[k] = v->frontal && own == variant &&
-                       (scope == CP_SCOPE_ALL || v->validity == 0) &&
-                       cp_slice_has_crash(data, slice, &data->crash[v->crash]);
+    for (size_t k = 0; k < cp_any_vehicle_count(data); k++) {
+        cp_any_vehicle v = cp_any_vehicle_at(data, k);
+        e->chosen[k] = v.vehicle->frontal && v.variant == variant &&
+                       (scope == CP_SCOPE_ALL || v.vehicle->validity == 0) &&
+                       cp_slice_has_crash(data, slice, v.crash);
     }
     cp_corridor c;
     cp_status status = cp_corridor_of(e->pulses, e->chosen, &c, error);

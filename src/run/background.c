@@ -18,7 +18,7 @@ static cp_status add_contact(const cp_traffic *traffic, const cp_found_contact *
         return cp_fail_memory(error, "background");
     *row = (cp_background_contact_row){.time_s = impact->time_s,
                                        .contact_m = impact->contact_m,
-                                       .reason = found->found_as,
+                                       .reason = cp_found_as_text(found->found_as),
                                        .crash_type = "",
                                        .closing_speed_m_s = NAN,
                                        .lateral_offset_m = NAN,
@@ -132,7 +132,8 @@ cp_status cp_background_write_json(const cp_background_rows *rows, const cp_cros
             json_array_append_new(crashes, crash_json(contact));
     }
     for (size_t k = 0; k < check->sumo_count; k++)
-        count(reports, "found_as", check->sumo[k].found_as, NULL, NULL, "collisions");
+        count(reports, "found_as", cp_found_as_text(check->sumo[k].found_as), NULL, NULL,
+              "collisions");
     json_t *result =
         json_pack("{s:s, s:I, s:f, s:f, s:f, s:f, s:I, s:o, s:o, s:o}", "network", rows->scenario,
                   "seed", (json_int_t)rows->seed, "step_length_s", rows->step_length_s,

@@ -125,7 +125,7 @@ static cp_status run_steps(branch_run *run, bool is_null, cp_error *error)
 }
 
 // First crash within the horizon, and the crashes between others.
-static bool send_answer(const branch_run *run, int to)
+static cp_status send_answer(const branch_run *run, int to, cp_error *error)
 {
     const cp_simulation *simulation = run->world->simulation;
     double horizon_s = run->request->contact_s + run->world->treatments->timing.horizon_s;
@@ -136,52 +136,52 @@ static bool send_answer(const branch_run *run, int to)
     const cp_found_contact **others = calloc(simulation->found_count + 1, sizeof *others);
     size_t other_count = 0;
     if (others == NULL)
-        return false;
+        return cp_fail_memory(error, "crashes of a branch");
     for (size_t k = run->begun_at; k < simulation->found_count; k++) {
         const cp_found_contact *found = &simulation->found[k];
         if (cp_found_is_crash(found) && !involves_pair(run, found) &&
             found->impact.time_s <= horizon_s)
             others[other_count++] = found;
     }
-    bool sent = cp_branch_answer_send(to, simulation->traffic, first, run->world->samples,
-                                      run->sample_count, others, other_count);
+    cp_status status = cp_branch_answer_send(to, simulation->traffic, first, run->world->samples,
+                                             run->sample_count, others, other_count, error);
     free(others);
-    return sent;
+    return status;
 }
 
-int cp_branch_run(void *context, size_t number, const void *request, size_t size, int answer)
+cp_status cp_branch_run(void *context, size_t number, const void *request, size_t size, int answer,
+                        cp_error *error)
 {
     const cp_branch_world *world = context;
+    const cp_treatments *treatments = world->treatments;
     cp_simulation *simulation = world->simulation;
-    cp_error error = {0};
     branch_run run = {.world = world,
                       .request = request,
                       .begun_at = simulation->found_count,
                       .seen = simulation->found_count};
     if (size < cp_branch_request_size(0) ||
         size != cp_branch_request_size(run.request->earlier_count))
-        return 1;
+        return cp_fail(error, CP_RUN_FAILED, "a branch's request is damaged");
 
     // Number 0 changes nothing.
+    cp_status status = CP_OK;
     if (number > 0) {
-        const cp_treatment *treatment = &world->treatments->treatment[number - 1];
+        const cp_treatment *treatment = &treatments->treatment[number - 1];
         const char *ids[2] = {run.request->ids[0], run.request->ids[1]};
-        if (cp_controls_add_treatment(simulation->controls, treatment->functions,
-                                      treatment->function_count, world->treatments->study_seed,
-                                      world->treatments->seed, ids, &error) != CP_OK)
-            return 1;
+        status = cp_controls_add_treatment(simulation->controls, treatment->functions,
+                                           treatment->function_count, treatments->study_seed,
+                                           treatments->seed, ids, error);
     }
-    if (run_steps(&run, number == 0, &error) != CP_OK)
-        return 1;
-    return send_answer(&run, answer) ? 0 : 1;
+    if (status == CP_OK)
+        status = run_steps(&run, number == 0, error);
+    return status == CP_OK ? send_answer(&run, answer, error) : status;
 }
 
-int cp_branch_advance(void *context, double time_s)
+cp_status cp_branch_advance(void *context, double time_s, cp_error *error)
 {
     const cp_branch_world *world = context;
-    cp_error error = {0};
     cp_status status = CP_OK;
     while (status == CP_OK && cp_traffic_time_s(world->simulation->traffic) < time_s)
-        status = cp_simulation_step(world->simulation, &error);
-    return status == CP_OK ? 0 : 1;
+        status = cp_simulation_step(world->simulation, error);
+    return status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/counterfactual.h"
 
+#include "control/acting.h"
 #include "run/branch_run.h"
 #include "run/checkpoint.h"
 #include "run/pair.h"
@@ -148,8 +149,8 @@ static cp_status remember_inserted(cp_counterfactual *self, cp_error *error)
 static double error_onset_s(const cp_counterfactual *self, const cp_found_contact *found, int role)
 {
     const vehicle_past *past = &self->past[found->impact.vehicle[role]];
-    double towards_s = found->error_since_s[role];
-    if (!found->errs_alone[role])
+    double towards_s = found->car[role].error_since_s;
+    if (!found->car[role].errs_alone)
         return towards_s;
     double onset_s = past->was_at_fault ? past->fault_since_s -
                                               self->world.treatments->timing.checkpoint_interval_s
@@ -235,7 +236,11 @@ static cp_status branch(cp_counterfactual *self, size_t index, cp_error *error)
                                                   cp_branch_request_size(request.earlier_count),
                                                   branches, &self->ends[number * branches]))
         pair->status = CP_NULL_CHECKPOINT_LOST;
-    return status;
+    // A library of the study's that failed in one of them fails the replication, as it does here.
+    const char *told = status == CP_OK ? cp_acting_told() : NULL;
+    return told != NULL ? cp_fail(error, CP_RUN_FAILED, "in a branch from %.2f s: %s",
+                                  pair->checkpoint_s, told)
+                        : status;
 }
 
 // Freeze this checkpoint, if the way from the last copy has become long.

@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "crash/named_vehicle.h"
 #include "crash/shipped_vehicle.h"
+#include "run/fleet_car.h"
 #include "study/scenario_files.h"
 
 #include <stdlib.h>
@@ -172,7 +173,7 @@ static cp_status add_none(cp_fleet *fleet, cp_error *error)
 cp_status cp_fleet_load(const cp_study *study, cp_fleet *fleet, cp_error *error)
 {
     *fleet = (cp_fleet){.study = study};
-    cp_status status = CP_OK;
+    cp_status status = cp_fleet_check_market(study, error);
     for (size_t k = 0; status == CP_OK && k < study->vehicle_count; k++) {
         const cp_study_vehicle *vehicle = &study->vehicles[k];
         status = make_room(fleet, error);
@@ -204,6 +205,12 @@ void cp_fleet_destroy(cp_fleet *fleet)
 }
 
 // ---- choosing ------------------------------------------------------------------------------
+
+const cp_vehicle_model *cp_fleet_find(const cp_fleet *fleet, const char *name)
+{
+    size_t k = find_name(fleet, name);
+    return k < fleet->count ? &fleet->models[k] : NULL;
+}
 
 static cp_status choose_named(const cp_fleet *fleet, const char *sumocfg_path,
                               const char *sumo_type, const char *name, cp_fleet_choice *choice,

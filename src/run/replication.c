@@ -88,8 +88,8 @@ static cp_status name_crash(const replication_run *run, const cp_found_contact *
     const cp_impact *impact = &found->impact;
     *named = (named_crash){.found = found, .names.sumocfg_path = run->simulation.sumocfg_path};
     for (int role = 0; role < 2; role++) {
-        named->names.at_fault[role] = found->at_fault[role];
-        named->names.had_crashed[role] = found->had_crashed[role];
+        named->names.at_fault[role] = found->car[role].at_fault;
+        named->names.had_crashed[role] = found->car[role].had_crashed;
         named->id[role] =
             strdup(cp_traffic_vehicle_id(run->simulation.traffic, impact->vehicle[role]));
         named->type[role] =
@@ -173,7 +173,7 @@ static cp_status record_contact(replication_run *run, const cp_found_contact *fo
         return cp_fail_memory(error, "contact");
     row->time_s = impact->time_s;
     row->contact_m = impact->contact_m;
-    row->verdict = found->found_as;
+    row->verdict = cp_found_as_text(found->found_as);
     for (int role = 0; role < 2; role++) {
         row->vehicle[role] =
             strdup(cp_traffic_vehicle_id(run->simulation.traffic, impact->vehicle[role]));
@@ -221,12 +221,12 @@ static cp_status record_cross_check(replication_run *run, const cp_replication_r
         row->collider = strdup(cp_traffic_vehicle_id(run->simulation.traffic, pair->collider));
         row->victim = strdup(cp_traffic_vehicle_id(run->simulation.traffic, pair->victim));
         row->type = strdup(pair->type);
-        row->found_as = pair->found_as;
+        row->found_as = cp_found_as_text(pair->found_as);
         row->gap_m = isfinite(pair->gap_m) ? pair->gap_m : NAN;
         if (row->collider == NULL || row->victim == NULL || row->type == NULL)
             return cp_fail_memory(error, "collision of SUMO");
         bool is_apart = isfinite(pair->gap_m) && pair->gap_m > 0.0;
-        if (strcmp(pair->found_as, "no_contact") == 0 && !is_apart && unexplained++ == 0)
+        if (pair->found_as == CP_FOUND_NO_CONTACT && !is_apart && unexplained++ == 0)
             first = run->results->sumo_collision_count - 1;
     }
     // All are stored with what they were found as; what nothing explains is said.
@@ -341,6 +341,25 @@ cp_status cp_replication_run(const cp_study *study, const cp_fleet *fleet,
     return status;
 }
 
+// Parameters may be good one by one and contradict each other: the function itself knows. Libraries
+// are not loaded here: what is wrong with them fails their own replications.
+static cp_status try_functions(const cp_study *study, const cp_study_variant *variant,
+                               const cp_traffic *traffic, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < variant->function_count; k++) {
+        cp_controls *controls = NULL;
+        if (variant->functions[k].library != NULL)
+            continue;
+        status = cp_controls_create(&variant->functions[k], 1, study->seed, 1, traffic, &controls,
+                                    error);
+        cp_controls_destroy(controls);
+    }
+    if (status != CP_OK)
+        cp_error_prefix(error, "variant %s: ", variant->name);
+    return status;
+}
+
 cp_status cp_replication_probe(const cp_study *study, const cp_study_scenario *scenario,
                                cp_error *error)
 {
@@ -350,16 +369,8 @@ cp_status cp_replication_probe(const cp_study *study, const cp_study_scenario *s
     if (status == CP_OK)
         status = cp_traffic_step(simulation.traffic, error);
 
-    // Parameters may be good one by one and contradict each other: the controls themselves know.
-    for (size_t k = 0; status == CP_OK && k < study->variant_count; k++) {
-        const cp_study_variant *variant = &study->variants[k];
-        cp_controls *controls = NULL;
-        status = cp_controls_create(variant->functions, variant->function_count, study->seed, 1,
-                                    simulation.traffic, &controls, error);
-        cp_controls_destroy(controls);
-        if (status != CP_OK)
-            cp_error_prefix(error, "variant %s: ", variant->name);
-    }
+    for (size_t k = 0; status == CP_OK && k < study->variant_count; k++)
+        status = try_functions(study, &study->variants[k], simulation.traffic, error);
     cp_probe_outputs_delete(scenario->name);
     cp_simulation_end(&simulation);
 

@@ -162,6 +162,19 @@ static cp_status check_outputs(const cp_study_scenario *scenario, cp_error *erro
     return cp_scenario_outputs_check(&inputs, error);
 }
 
+// Code of somebody else's is loaded only when that is asked for.
+static cp_status check_libraries(const runner *run, cp_error *error)
+{
+    const cp_study_variant *variant = NULL;
+    const cp_library *library = cp_study_library(&run->study, 0, &variant);
+    if (library == NULL || run->options->allow_plugins)
+        return CP_OK;
+    return cp_fail(error, CP_BAD_INPUT,
+                   "%s: variant %s loads code of its own, %s (%s); give --allow-plugins only to a "
+                   "study whose libraries you would run yourself ('crashpulse plan' lists them)",
+                   run->options->study_path, variant->name, library->written, library->path);
+}
+
 // Of the values of a sweep one is enough, unless SUMO is started otherwise for each.
 static cp_status probe_scenarios(runner *run, cp_error *error)
 {
@@ -337,8 +350,14 @@ static cp_status start_job(runner *run, runner_job *job, cp_error *error)
                                id,
                                "--parent",
                                run->parent,
-                               outputs_word(run),
+                               NULL,
+                               NULL,
                                NULL};
+    size_t words = sizeof arguments / sizeof *arguments - 3;
+    if (run->options->free_outputs)
+        arguments[words++] = outputs_word(run);
+    if (run->options->allow_plugins)
+        arguments[words++] = "--allow-plugins";
     cp_status status = cp_child_start(run->worker_path, arguments, &job->child, error);
     job->child.said = &run->said;
     if (status != CP_OK)
@@ -596,6 +615,8 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
     if (status == CP_OK && options->progress)
         status = tell_inputs(&run.study, error);
     if (status == CP_OK)
+        status = check_libraries(&run, error);
+    if (status == CP_OK)
         status = find_worker(&run, error);
     if (status == CP_OK)
         status = probe_scenarios(&run, error);
@@ -613,6 +634,7 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
     free(run.jobs);
     free(run.waiting);
     free(run.background_missing);
+    cp_store_finish(run.store);
     cp_store_close(run.store);
     cp_plan_destroy(&run.plan);
     cp_fleet_destroy(&run.fleet);

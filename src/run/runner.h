@@ -19,6 +19,7 @@ typedef struct cp_runner_options {
     size_t shard;        /* 1 ... shards: which share of the replications to run; */
     size_t shards;       /* 0: all of them */
     bool free_outputs;   /* SUMO may write and connect where the scenarios say */
+    bool allow_plugins;  /* load the libraries that the study names; else it is refused */
     bool unchecked;      /* do not read the whole database for damage first */
     bool progress;       /* show progress on stderr */
 } cp_runner_options;

@@ -7,13 +7,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-const char CP_FOUND_CRASH[] = "crash";
-const char CP_FOUND_AFTER_CRASH[] = "after_crash";
-const char CP_FOUND_WARMUP[] = "warmup";
-
 bool cp_found_is_crash(const cp_found_contact *found)
 {
-    return found->found_as == CP_FOUND_CRASH || found->found_as == CP_FOUND_WARMUP;
+    return cp_found_as_is_crash(found->found_as);
 }
 
 // ---- beginning and end ---------------------------------------------------------------------
@@ -146,7 +142,7 @@ static size_t first_crash_of(const cp_simulation *simulation, uint32_t vehicle)
 }
 
 static cp_status remember_found(cp_simulation *simulation, const cp_impact *impact,
-                                const char *found_as, cp_error *error)
+                                cp_found_as found_as, cp_error *error)
 {
     if (simulation->found_count == simulation->found_room) {
         size_t room = simulation->found_room == 0 ? 64 : 2 * simulation->found_room;
@@ -160,16 +156,13 @@ static cp_status remember_found(cp_simulation *simulation, const cp_impact *impa
     *found =
         (cp_found_contact){.impact = *impact, .found_as = found_as, .follows = CP_FOLLOWS_NONE};
     for (int role = 0; role < 2; role++) {
-        found->at_fault[role] = is_at_fault(simulation, impact->vehicle[role]);
-        found->errs_alone[role] =
-            found->at_fault[role] &&
-            cp_controls_errs_alone(simulation->controls, impact->vehicle[role]);
-        found->error_since_s[role] = cp_controls_error_since_s(
-            simulation->controls, impact->vehicle[role], impact->vehicle[1 - role]);
-        found->had_crashed[role] = cp_traffic_is_held(simulation->traffic, impact->vehicle[role]);
-        size_t earlier = found->had_crashed[role]
-                             ? first_crash_of(simulation, impact->vehicle[role])
-                             : CP_FOLLOWS_NONE;
+        cp_found_car *car = &found->car[role];
+        uint32_t own = impact->vehicle[role], other = impact->vehicle[1 - role];
+        car->at_fault = is_at_fault(simulation, own);
+        car->errs_alone = car->at_fault && cp_controls_errs_alone(simulation->controls, own);
+        car->error_since_s = cp_controls_error_since_s(simulation->controls, own, other);
+        car->had_crashed = cp_traffic_is_held(simulation->traffic, own);
+        size_t earlier = car->had_crashed ? first_crash_of(simulation, own) : CP_FOLLOWS_NONE;
         if (earlier < found->follows)
             found->follows = earlier;
     }
@@ -199,9 +192,9 @@ static cp_status remember_history(cp_simulation *simulation, cp_error *error)
 // traffic is still warming up.
 static cp_status take_impact(cp_simulation *simulation, const cp_impact *impact, cp_error *error)
 {
-    const char *found_as = CP_FOUND_CRASH;
+    cp_found_as found_as = CP_FOUND_CRASH;
     if (impact->verdict != CP_CONTACT_CONFIRMED)
-        found_as = cp_contact_verdict_text(impact->verdict);
+        found_as = cp_found_as_verdict(impact->verdict);
     else if (has_crashed(simulation, impact->vehicle[0]) ||
              has_crashed(simulation, impact->vehicle[1]))
         found_as = CP_FOUND_AFTER_CRASH;
@@ -213,8 +206,10 @@ static cp_status take_impact(cp_simulation *simulation, const cp_impact *impact,
         return status;
     cp_found_contact *found = &simulation->found[simulation->found_count - 1];
     if (cp_found_is_crash(found))
-        status = cp_participants_of(simulation->controls, impact, found->had_crashed,
-                                    &found->participants, error);
+        status = cp_participants_of(
+            simulation->controls, impact,
+            (const bool[2]){found->car[0].had_crashed, found->car[1].had_crashed},
+            &found->participants, error);
     if (status == CP_OK && found_as == CP_FOUND_CRASH && simulation->history != NULL)
         status = remember_history(simulation, error);
     if (status == CP_OK)

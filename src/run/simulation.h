@@ -5,6 +5,7 @@
 #include "control/control.h"
 #include "impact/impact.h"
 #include "run/cross_check.h"
+#include "run/found_as.h"
 #include "run/history.h"
 #include "run/sumo_words.h"
 #include "store/participant_rows.h"
@@ -12,19 +13,20 @@
 /* The traffic of one replication, step by step: what the baseline and every branch from a
  * checkpoint of it go through alike. In the worker process only. */
 
-/* A contact and what became of it; static text. */
-extern const char CP_FOUND_CRASH[];       /* confirmed and counted */
-extern const char CP_FOUND_AFTER_CRASH[]; /* one of the two had crashed in the same step already */
-extern const char CP_FOUND_WARMUP[];      /* confirmed, but before the end of the warm-up */
+/* What is known of one of the two cars of a contact, at the end of its step. */
+typedef struct cp_found_car {
+    bool at_fault;        /* a driver error is at work on it; never on a car that had crashed */
+    bool errs_alone;      /* one that is at work whoever the other is */
+    bool had_crashed;     /* it stands there since an earlier crash */
+    double error_since_s; /* SUMO clock: since when it has erred towards the other; INFINITY */
+} cp_found_car;
 
+/* A contact and what became of it. */
 typedef struct cp_found_contact {
     cp_impact impact;
-    const char *found_as;    /* one of the above, or the verdict of a contact that is no crash */
-    bool at_fault[2];        /* a driver error is at work on it; never on a car that had crashed */
-    bool errs_alone[2];      /* one that is at work whoever the other is */
-    double error_since_s[2]; /* SUMO clock: since when it has erred towards the other; INFINITY */
-    bool had_crashed[2];     /* it stands there since an earlier crash */
-    size_t follows;          /* index of that crash (of both cars' the first); CP_FOLLOWS_NONE */
+    cp_found_as found_as;
+    cp_found_car car[2]; /* by role */
+    size_t follows;      /* index of the first of the cars' earlier crashes; CP_FOLLOWS_NONE */
     cp_participant_rows participants; /* of crashes; owned by the simulation */
 } cp_found_contact;
 

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/worker.h"
 
+#include "control/acting.h"
 #include "core/file.h"
 #include "core/progress.h"
 #include "crash/crash_simulation.h"
 #include "run/background.h"
 #include "run/confinement.h"
-#include "run/fleet.h"
+#include "run/fleet_car.h"
 #include "run/owner.h"
 #include "run/replication.h"
 #include "run/vehicle_types.h"
@@ -88,8 +89,21 @@ static cp_status run_claimed(const cp_study *study, const cp_fleet *fleet,
     return status;
 }
 
+// Libraries are loaded when that is allowed, and watched.
+static cp_status admit_libraries(const cp_study *study, bool allow_plugins, cp_error *error)
+{
+    const cp_study_variant *variant = NULL;
+    const cp_library *library = cp_study_library(study, 0, &variant);
+    if (library == NULL)
+        return CP_OK;
+    if (!allow_plugins)
+        return cp_fail(error, CP_BAD_INPUT, "%s: variant %s loads %s, which is not allowed",
+                       study->path, variant->name, library->written);
+    return cp_acting_watch(CP_WORKER_REPORT_FD, error);
+}
+
 cp_status cp_worker_run(const char *study_path, const char *db_path, int64_t replication_id,
-                        bool free_outputs, int *elsewhere, cp_error *error)
+                        bool free_outputs, bool allow_plugins, int *elsewhere, cp_error *error)
 {
     cp_study study = {0};
     cp_fleet fleet = {0};
@@ -97,6 +111,8 @@ cp_status cp_worker_run(const char *study_path, const char *db_path, int64_t rep
     int attempt = 0;
     *elsewhere = 0;
     cp_status status = cp_study_load(study_path, &study, error);
+    if (status == CP_OK)
+        status = admit_libraries(&study, allow_plugins, error);
     if (status == CP_OK)
         status = cp_fleet_load(&study, &fleet, error);
     if (status == CP_OK)
@@ -116,6 +132,7 @@ cp_status cp_worker_run(const char *study_path, const char *db_path, int64_t rep
     if (status == CP_OK)
         status = claim(db_path, replication, &attempt, error);
     *elsewhere = status == CP_OK && attempt == 0;
+    cp_fleet_begin(&fleet, replication->number);
     if (status == CP_OK && attempt > 0)
         status = run_claimed(&study, &fleet, replication, attempt, db_path, error);
 done:

@@ -30,6 +30,7 @@ typedef struct worker_arguments {
     const char *step_length;
     const char *duration;
     bool free_outputs;
+    bool allow_plugins;
 } worker_arguments;
 
 static const struct argp_option OPTIONS[] = {
@@ -48,6 +49,7 @@ static const struct argp_option OPTIONS[] = {
     {"expect", 'e', "HASH", 0, "if the study's run has this configuration", 0},
     {"allow-sumo-outputs", 'o', NULL, 0, "Let SUMO write and connect where the scenario says", 0},
     {"version", 'V', NULL, 0, "Only print the version, with libsumo loaded", 0},
+    {"allow-plugins", 'L', NULL, 0, "Load the libraries that the study names", 0},
     {0}};
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
@@ -95,6 +97,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         exit(CP_WORKER_EXIT_DONE);
     case 'o':
         arguments->free_outputs = true;
+        return 0;
+    case 'L':
+        arguments->allow_plugins = true;
         return 0;
     case ARGP_KEY_END:
         if (arguments->background != NULL) {
@@ -182,6 +187,6 @@ int main(int argc, char **argv)
         arguments.probe != NULL
             ? cp_worker_probe(arguments.study, arguments.probe, arguments.free_outputs, &error)
             : cp_worker_run(arguments.study, arguments.db, strtoll(arguments.replication, NULL, 10),
-                            arguments.free_outputs, &elsewhere, &error);
+                            arguments.free_outputs, arguments.allow_plugins, &elsewhere, &error);
     return finish(status, elsewhere, &error);
 }

@@ -109,11 +109,4 @@ CP_MUST_CHECK cp_status cp_counterfactual_rows_write(cp_store *store, int64_t re
                                                      const cp_counterfactual_rows *rows,
                                                      cp_error *error);
 
-/* The stored pulse of a vehicle ("a", "b") of the crash that the baseline's crash crash_id became
- * under the treatment called variant; *there is false, and pulse empty, when none is stored. The
- * caller destroys pulse. Errors: those of the store; CP_BAD_INPUT for a damaged pulse. */
-CP_MUST_CHECK cp_status cp_counterfactual_pulse_read(cp_store *store, int64_t crash_id,
-                                                     const char *variant, const char *role,
-                                                     cp_pulse *pulse, bool *there, cp_error *error);
-
 #endif

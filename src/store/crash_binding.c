@@ -65,6 +65,32 @@ static void bind_place(cp_statement *s, const cp_crash_row *crash, int role)
         cp_bind_integer(s, 45, errors);
 }
 
+// How far it was pushed in: parameters 46 to 48.
+static void bind_intrusion(cp_statement *s, const cp_crash_vehicle_row *vehicle)
+{
+    cp_bind_real(s, 46, vehicle->intrusion_m);
+    cp_bind_text(s, 47, vehicle->intrusion_zone);
+    cp_bind_real(s, 48, vehicle->severity.max_50ms_y_g);
+}
+
+// What was drawn of the car, and what speaks for its severity: parameters 49 to 52.
+static void bind_car(cp_statement *s, const cp_crash_vehicle_row *vehicle)
+{
+    const cp_olc *olc = &vehicle->severity.olc;
+    bool is_drawn = vehicle->drawn != NULL && vehicle->drawn[0] != '\0';
+    bool has_class = vehicle->evidence_class != NULL;
+    double error_1 = has_class ? vehicle->class_error_1 : NAN;
+    double olc_g = NAN;
+    if (olc->status == CP_OLC_VALUE)
+        olc_g = olc->olc_g;
+    else if (olc->status == CP_OLC_NO_DECELERATION || olc->status == CP_OLC_BEYOND_HORIZON)
+        olc_g = 0.0;
+    cp_bind_text(s, 49, is_drawn ? vehicle->drawn : NULL);
+    cp_bind_text(s, 50, vehicle->evidence_class);
+    cp_bind_real(s, 51, error_1);
+    cp_bind_real(s, 52, error_1 * olc_g);
+}
+
 void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_row *crash, int role,
                            char validity[CP_VALIDITY_TEXT_SIZE])
 {
@@ -73,6 +99,8 @@ void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_row *crash, int role,
     cp_bind_text(s, 21, cp_validity_text(vehicle->outside, validity));
     bind_severity(s, vehicle);
     bind_place(s, crash, role);
+    bind_intrusion(s, vehicle);
+    bind_car(s, vehicle);
 }
 
 // OLC by every parameter set, parameters 1 to key being bound already.

@@ -9,6 +9,7 @@ void cp_crash_row_destroy(cp_crash_row *crash)
         free(crash->vehicle[v].sumo_id);
         free(crash->vehicle[v].sumo_type);
         free(crash->vehicle[v].vehicle_model);
+        free(crash->vehicle[v].drawn);
         free(crash->vehicle[v].lane);
         free(crash->vehicle[v].edge);
         free(crash->vehicle[v].junction);

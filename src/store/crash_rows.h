@@ -16,6 +16,7 @@ typedef struct cp_crash_vehicle_row {
     char *sumo_id;
     char *sumo_type;
     char *vehicle_model;
+    char *drawn;               /* of the model's parameters, JSON (crash/drawn_car.h); "": none */
     const char *chosen_by;     /* static text: why this model; "" without one */
     char no_model_reason[160]; /* why none; "" with one */
     bool at_fault;
@@ -30,10 +31,14 @@ typedef struct cp_crash_vehicle_row {
     double velocity_angle_rad;
     cp_contact_side side;
     unsigned outside;     /* validity set, 0 = inside */
+    const char *evidence_class; /* static text: class of tests that speaks for it; NULL: none */
+    double class_error_1;       /* relative error of severity in that class; NAN: not known */
     cp_severity severity; /* with the OLC status that holds; NAN where there is no value */
     double crush_m;       /* NAN when the simulation failed, as the next two */
     double absorbed_j;
     double ees_m_s;
+    double intrusion_m;             /* NAN when the simulation failed */
+    const char *intrusion_zone;     /* static text; NULL likewise */
     double olc_sd_g;                /* over the ensemble of its model; NAN without one */
     size_t member_count;            /* 0: no ensemble, or not frontal */
     cp_olc member[CP_ENSEMBLE_MAX]; /* OLC by every parameter set of it */

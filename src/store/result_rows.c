@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/result_rows.h"
 
+#include "core/array.h"
 #include "crash/validity.h"
 #include "pulse/pulse_codec.h"
 #include "store/counterfactual_rows.h"
@@ -15,43 +16,19 @@ static const char *const ROLE[2] = {"a", "b"};
 
 // ---- collecting ----------------------------------------------------------------------------
 
-// Room for one more element, zeroed; growth by doubling at powers of two.
-static void *grow(void **array, size_t *count, size_t size)
-{
-    if ((*count & (*count - 1)) == 0) {
-        void *larger = realloc(*array, (*count == 0 ? 1 : 2 * *count) * size);
-        if (larger == NULL)
-            return NULL;
-        *array = larger;
-    }
-    void *added = (char *)*array + *count * size;
-    memset(added, 0, size);
-    (*count)++;
-    return added;
-}
-
 cp_crash_row *cp_result_rows_add_crash(cp_result_rows *rows)
 {
-    void *array = rows->crash;
-    cp_crash_row *added = grow(&array, &rows->crash_count, sizeof *added);
-    rows->crash = array;
-    return added;
+    return cp_array_add(rows->crash, rows->crash_count);
 }
 
 cp_contact_row *cp_result_rows_add_contact(cp_result_rows *rows)
 {
-    void *array = rows->contact;
-    cp_contact_row *added = grow(&array, &rows->contact_count, sizeof *added);
-    rows->contact = array;
-    return added;
+    return cp_array_add(rows->contact, rows->contact_count);
 }
 
 cp_sumo_collision_row *cp_result_rows_add_sumo_collision(cp_result_rows *rows)
 {
-    void *array = rows->sumo_collision;
-    cp_sumo_collision_row *added = grow(&array, &rows->sumo_collision_count, sizeof *added);
-    rows->sumo_collision = array;
-    return added;
+    return cp_array_add(rows->sumo_collision, rows->sumo_collision_count);
 }
 
 void cp_result_rows_destroy(cp_result_rows *rows)
@@ -194,7 +171,7 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
             "INSERT INTO crash_vehicle SELECT ?1, ?2, scenario_id, variant_id, ?4, ?5, ?6, ?7, ?8, "
             "?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, "
             "?26, ?27, ?28, ?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40, ?41, ?42, "
-            "?43, ?44, ?45 FROM replication WHERE id = ?3",
+            "?43, ?44, ?45, ?46, ?47, ?48, ?49, ?50, ?51, ?52 FROM replication WHERE id = ?3",
             &vehicle, error);
     if (status == CP_OK)
         status = cp_statement_prepare(
@@ -350,34 +327,5 @@ cp_status cp_result_rows_commit(cp_store *store, const cp_result_rows *rows, cp_
         status = cp_store_commit(store, error);
     if (status != CP_OK)
         cp_store_rollback(store);
-    return status;
-}
-
-// ---- reading -------------------------------------------------------------------------------
-
-cp_status cp_result_pulse_read(cp_store *store, int64_t crash_id, const char *role, cp_pulse *pulse,
-                               cp_error *error)
-{
-    cp_statement s;
-    int row = 0;
-    *pulse = (cp_pulse){0};
-    cp_status status = cp_statement_prepare(
-        store, "reading a pulse",
-        "SELECT codec, samples, sample_count, sample_interval_s FROM pulse WHERE crash_id = ?1 AND "
-        "role = ?2",
-        &s, error);
-    cp_bind_integer(&s, 1, crash_id);
-    cp_bind_text(&s, 2, role);
-    if (status == CP_OK)
-        status = cp_statement_row(&s, &row, error);
-    if (status == CP_OK && !row)
-        status = cp_fail(error, CP_BAD_INPUT, "%s: there is no pulse of vehicle %s of crash %lld",
-                         cp_store_path(store), role, (long long)crash_id);
-    if (status == CP_OK)
-        status = cp_pulse_decode(sqlite3_column_int(s.handle, 0), sqlite3_column_blob(s.handle, 1),
-                                 (size_t)sqlite3_column_bytes(s.handle, 1),
-                                 sqlite3_column_int64(s.handle, 2),
-                                 sqlite3_column_double(s.handle, 3), pulse, error);
-    cp_statement_finish(&s);
     return status;
 }

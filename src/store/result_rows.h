@@ -64,9 +64,4 @@ void cp_result_rows_destroy(cp_result_rows *rows);
 CP_MUST_CHECK cp_status cp_result_rows_commit(cp_store *store, const cp_result_rows *rows,
                                               cp_error *error);
 
-/* The stored pulse of one vehicle of a crash. The caller destroys it. Errors: CP_BAD_INPUT when
- * there is none or it is damaged. */
-CP_MUST_CHECK cp_status cp_result_pulse_read(cp_store *store, int64_t crash_id, const char *role,
-                                             cp_pulse *pulse, cp_error *error);
-
 #endif

@@ -5,6 +5,7 @@
 #include "core/log.h"
 #include "store/schema.h"
 #include "store/schema_match.h"
+#include "store/store_file.h"
 #include "store/store_sqlite.h"
 
 #include <errno.h>
@@ -16,7 +17,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#define BUSY_TIMEOUT_MS 60000
 
 char *cp_store_file_name(const char *path)
 {
@@ -85,27 +85,16 @@ static cp_status fail_opening(cp_store *store, int code, cp_error *error)
                    sqlite3_errmsg(store->handle));
 }
 
-// On a read-only disk SQLite cannot keep its log of readers: nobody writes there, so it need not.
-static cp_status open_unchanging(cp_store *store, cp_error *error)
+// Open for reading with a parameter of SQLite's URIs.
+static cp_status open_with(cp_store *store, const char *parameter, cp_error *error)
 {
-    struct stat log;
-    char *log_path = sqlite3_mprintf("%s-wal", store->path);
-    bool has_log = log_path != NULL && stat(log_path, &log) == 0 && log.st_size > 0;
-    sqlite3_free(log_path);
-    if (has_log)
-        return cp_fail(
-            error, CP_BAD_INPUT,
-            "%s: has an unfinished log beside it (-wal) on a read-only disk; copy both to "
-            "another disk",
-            store->path);
-
     // A file name within an URI: its special characters as %xx.
     char *uri = sqlite3_mprintf(store->file_name[0] == '/' ? "file://" : "file:");
     for (const char *c = store->file_name; *c != '\0' && uri != NULL; c++)
         uri = strchr("%?# ", *c) != NULL ? sqlite3_mprintf("%z%%%02x", uri, *c)
                                          : sqlite3_mprintf("%z%c", uri, *c);
     if (uri != NULL)
-        uri = sqlite3_mprintf("%z?immutable=1", uri);
+        uri = sqlite3_mprintf("%z?%s", uri, parameter);
     if (uri == NULL)
         return cp_fail_memory(error, store->path);
     int result = sqlite3_open_v2(uri, &store->handle, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, NULL);
@@ -113,21 +102,62 @@ static cp_status open_unchanging(cp_store *store, cp_error *error)
     return result == SQLITE_OK ? CP_OK : fail_opening(store, result, error);
 }
 
-static cp_status open_file(cp_store *store, cp_store_mode mode, bool exists, cp_error *error)
+static cp_status open_plain(cp_store *store, int flags, cp_error *error)
 {
-    if (exists && access(store->path, W_OK) != 0) {
-        if (mode != CP_STORE_READ)
-            return cp_fail(error, CP_IO_FAILED, "%s: cannot be written: %s", store->path,
-                           strerror(errno));
-        if (errno == EROFS)
-            return open_unchanging(store, error);
-    }
-    int flags = mode == CP_STORE_READ ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
-    if (mode == CP_STORE_CREATE)
-        flags |= SQLITE_OPEN_CREATE;
     if (sqlite3_open_v2(store->file_name, &store->handle, flags, NULL) != SQLITE_OK)
         return fail_opening(store, sqlite3_errcode(store->handle), error);
     return CP_OK;
+}
+
+// Without the right to write beside it a reader must do without files of its own; with the right
+// to write there and not to the database it must not leave any, which would shut the owner out.
+static cp_status open_for_reading(cp_store *store, cp_error *error)
+{
+    switch (cp_store_file_reading(store->path)) {
+    case CP_STORE_READING_SHARED_LOG:
+        return open_with(store, "readonly_shm=1", error);
+    case CP_STORE_READING_UNCHANGING:
+        return open_with(store, "immutable=1", error);
+    case CP_STORE_READING_LOST_LOG:
+        return cp_fail(error, CP_BAD_INPUT,
+                       "%s: has an unfinished log beside it (-wal) and cannot be written; whoever "
+                       "may write it takes the log in by 'crashpulse check --upgrade', or copy "
+                       "both files to a folder of your own",
+                       store->path);
+    case CP_STORE_READING_PLAIN:
+        break;
+    }
+    return open_plain(store, SQLITE_OPEN_READONLY, error);
+}
+
+// SQLite's log is shared memory: what lies on another machine has none.
+static void tell_network(const cp_store *store, cp_store_mode mode)
+{
+    bool writes = mode == CP_STORE_CREATE;
+    if (!writes && (mode != CP_STORE_READ || !cp_store_file_has_log_mode(store->path)))
+        return;
+    const char *network = cp_store_file_network(store->path);
+    if (network != NULL && writes)
+        cp_log_warning("%s: lies on a network file system (%s): only processes of one machine may "
+                       "use it until it is finished; on several machines run shards (--shard) with "
+                       "a database each and merge them, best on a local disk",
+                       store->path, network);
+    else if (network != NULL)
+        cp_log_warning("%s: lies on a network file system (%s) and is not finished: what another "
+                       "machine writes there may be seen late or torn; read it on that machine, or "
+                       "when it is finished",
+                       store->path, network);
+}
+
+static cp_status open_file(cp_store *store, cp_store_mode mode, bool exists, cp_error *error)
+{
+    if (mode == CP_STORE_READ)
+        return open_for_reading(store, error);
+    if (exists && access(store->path, W_OK) != 0)
+        return cp_fail(error, CP_IO_FAILED, "%s: cannot be written: %s", store->path,
+                       strerror(errno));
+    int create = mode == CP_STORE_CREATE ? SQLITE_OPEN_CREATE : 0;
+    return open_plain(store, SQLITE_OPEN_READWRITE | create, error);
 }
 
 // A database may come from anybody: its schema runs no function that reaches out, nothing writes
@@ -148,21 +178,34 @@ static cp_status set_limits(cp_store *store, cp_store_mode mode, cp_error *error
     return CP_OK;
 }
 
-// WAL mode. SQLite does not wait for others when it changes the mode: it is tried as long as for
-// any other lock.
-static cp_status keep_log(cp_store *store, cp_error *error)
+// Take the log in and leave WAL mode, which works for the last connection only.
+static bool leave_log(cp_store *store)
 {
-    enum { PAUSE_MS = 20 };
+    sqlite3_stmt *statement = NULL;
+    bool left = sqlite3_prepare_v2(store->handle, "PRAGMA journal_mode=DELETE", -1, &statement,
+                                   NULL) == SQLITE_OK &&
+                sqlite3_step(statement) == SQLITE_ROW &&
+                strcmp((const char *)sqlite3_column_text(statement, 0), "delete") == 0;
+    sqlite3_finalize(statement);
+    store->keeps_log = !left;
+    return left;
+}
+
+void cp_store_finish(cp_store *store)
+{
+    enum { PAUSE_MS = 20, PATIENCE_MS = 2000 };
     const struct timespec pause = {.tv_nsec = PAUSE_MS * 1000000L};
-    cp_status status = CP_BUSY;
-    for (int waited_ms = 0; status == CP_BUSY && waited_ms < BUSY_TIMEOUT_MS;
-         waited_ms += PAUSE_MS) {
-        status = cp_store_execute(store, "setting it up",
-                                  "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL", error);
-        if (status == CP_BUSY)
-            nanosleep(&pause, NULL);
+    if (store == NULL || !store->may_write || store->in_transaction)
+        return;
+    for (int waited_ms = 0; !leave_log(store); waited_ms += PAUSE_MS) {
+        if (waited_ms >= PATIENCE_MS) {
+            cp_log_info("%s: is read by others at present, so its log (-wal) stays beside it; "
+                        "'crashpulse check --upgrade' takes it in",
+                        store->path);
+            return;
+        }
+        nanosleep(&pause, NULL);
     }
-    return status;
 }
 
 static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *error)
@@ -174,10 +217,12 @@ static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *erro
     if (!exists && mode != CP_STORE_CREATE)
         return cp_fail(error, CP_BAD_INPUT, "%s: no such database", store->path);
 
+    tell_network(store, mode);
     cp_status status = open_file(store, mode, exists, error);
     if (status != CP_OK)
         return status;
-    sqlite3_busy_timeout(store->handle, BUSY_TIMEOUT_MS);
+    store->may_write = mode != CP_STORE_READ;
+    sqlite3_busy_timeout(store->handle, CP_STORE_BUSY_TIMEOUT_MS);
     bool views = false;
     status = set_limits(store, mode, error);
     // For new files only: rows of some hundred bytes, packed pulses among them, fill larger pages
@@ -186,8 +231,6 @@ static cp_status open_handle(cp_store *store, cp_store_mode mode, cp_error *erro
         sqlite3_exec(store->handle, "PRAGMA page_size=8192", NULL, NULL, NULL);
     if (status == CP_OK)
         status = check_version(store, mode, &views, error);
-    if (status == CP_OK && mode != CP_STORE_READ)
-        status = keep_log(store, error);
     if (status == CP_OK)
         status = cp_schema_refresh_views(store, views, mode != CP_STORE_READ, error);
     if (status == CP_OK)
@@ -229,6 +272,9 @@ void cp_store_close(cp_store *store)
         return;
     if (store->handle != NULL)
         cp_store_rollback(store);
+    // Whoever leaves last leaves a file that can be read without the right to write.
+    if (store->handle != NULL && store->may_write)
+        leave_log(store);
     sqlite3_close(store->handle);
     free(store->path);
     free(store->file_name);

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/statvfs.h>
+#include <time.h>
 
 sqlite3 *cp_store_sqlite(cp_store *store)
 {
@@ -183,9 +184,30 @@ cp_status cp_store_load_extension(cp_store *store, const char *path, cp_error *e
 
 // ---- transactions --------------------------------------------------------------------------
 
+// WAL mode. SQLite does not wait for others when it changes the mode: it is tried as long as for
+// any other lock.
+static cp_status keep_log(cp_store *store, cp_error *error)
+{
+    enum { PAUSE_MS = 20 };
+    const struct timespec pause = {.tv_nsec = PAUSE_MS * 1000000L};
+    cp_status status = CP_BUSY;
+    for (int waited_ms = 0; status == CP_BUSY && waited_ms < CP_STORE_BUSY_TIMEOUT_MS;
+         waited_ms += PAUSE_MS) {
+        status = cp_store_execute(store, "setting it up",
+                                  "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL", error);
+        if (status == CP_BUSY)
+            nanosleep(&pause, NULL);
+    }
+    store->keeps_log = status == CP_OK;
+    return status;
+}
+
 cp_status cp_store_begin(cp_store *store, cp_error *error)
 {
-    cp_status status = cp_store_execute(store, "beginning a transaction", "BEGIN IMMEDIATE", error);
+    // Not before there is something to write: a database that is refused stays as it is.
+    cp_status status = store->keeps_log ? CP_OK : keep_log(store, error);
+    if (status == CP_OK)
+        status = cp_store_execute(store, "beginning a transaction", "BEGIN IMMEDIATE", error);
     store->in_transaction = status == CP_OK;
     return status;
 }

@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/control_section.h"
 
+#include "control/control_types.h"
+#include "core/array.h"
 #include "core/nearest.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define KEY_PATH_SIZE 512
@@ -49,6 +53,27 @@ static cp_status fail_unknown_parameter(const cp_yaml_file *file, const cp_contr
                         names[0] != '\0' ? names : "none", meant);
 }
 
+// A parameter of a library: nothing is known of it but that it is given once.
+static cp_status keep_parameter(const cp_yaml_file *file, const cp_yaml_line *line,
+                                const char *name, cp_library *library, cp_error *error)
+{
+    for (size_t k = 0; k < library->given_count; k++)
+        if (strcmp(library->given[k].name, name) == 0)
+            return cp_yaml_fail(file, error, line->path, "is given twice");
+    if (line->scalar == NULL)
+        return cp_yaml_fail(file, error, line->path,
+                            "must be a number or text, found a list or mapping");
+    cp_library_parameter *given = cp_array_add(library->given, library->given_count);
+    if (given == NULL)
+        return cp_fail_memory(error, name);
+    char *end = NULL;
+    *given = (cp_library_parameter){.name = strdup(name), .text = strdup(line->scalar)};
+    given->number = strtod(line->scalar, &end);
+    if (end == line->scalar || *end != '\0' || !isfinite(given->number))
+        given->number = NAN;
+    return given->name != NULL && given->text != NULL ? CP_OK : cp_fail_memory(error, name);
+}
+
 static cp_status read_parameter(const cp_yaml_file *file, const cp_yaml_line *line,
                                 const char *name, cp_control_settings *settings,
                                 bool seen[CP_CONTROL_PARAMETERS_MAX], cp_error *error)
@@ -57,6 +82,8 @@ static cp_status read_parameter(const cp_yaml_file *file, const cp_yaml_line *li
     size_t index = 0;
     while (index < type->parameter_count && strcmp(type->parameters[index].name, name) != 0)
         index++;
+    if (index == type->parameter_count && settings->library != NULL)
+        return keep_parameter(file, line, name, settings->library, error);
     if (index == type->parameter_count)
         return fail_unknown_parameter(file, type, line->path, error);
     if (seen[index])
@@ -79,6 +106,9 @@ cp_status cp_control_section_read(const cp_yaml_file *file, cp_control_kind kind
     if (type == NULL)
         return fail_unknown_control(file, kind, path, name, error);
     *settings = cp_control_settings_default(type);
+    if (type == &CP_CONTROL_PLUGIN &&
+        (settings->library = calloc(1, sizeof *settings->library)) == NULL)
+        return cp_fail_memory(error, path);
 
     // Every line below <entry>.parameters is one parameter; that key itself may be empty.
     snprintf(path, sizeof path, "%s.parameters", entry_path);

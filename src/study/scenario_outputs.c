@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/scenario_outputs.h"
 
+#include "core/array.h"
 #include "core/file.h"
 #include "core/output_files.h"
 #include "study/scenario_walk.h"
@@ -75,11 +76,9 @@ static cp_status add(search *s, const char *place, const char *name, const char 
                      cp_error *error)
 {
     cp_scenario_outputs *found = s->found;
-    cp_scenario_output *more = realloc(found->output, (found->count + 1) * sizeof *more);
-    if (more == NULL)
+    cp_scenario_output *output = cp_array_add(found->output, found->count);
+    if (output == NULL)
         return cp_fail_memory(error, place);
-    found->output = more;
-    cp_scenario_output *output = &more[found->count++];
     *output = (cp_scenario_output){.place = strdup(place), .name = strdup(name), .why = why};
     return output->place != NULL && output->name != NULL ? CP_OK : cp_fail_memory(error, place);
 }

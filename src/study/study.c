@@ -39,9 +39,14 @@ void cp_study_destroy(cp_study *study)
         free(study->vehicles[k].model_path);
         free(study->vehicles[k].model_name);
     }
+    for (size_t k = 0; k < study->market_count; k++) {
+        free(study->market[k].type);
+        free(study->market[k].vehicle_class);
+    }
     free(study->scenarios);
     free(study->variants);
     free(study->vehicles);
+    free(study->market);
     free(study->question);
     free(study->name);
     free(study->content);

@@ -37,6 +37,14 @@ typedef struct cp_study_vehicle {
     size_t line;      /* in the study file */
 } cp_study_vehicle;
 
+/* A share of a vehicle class among the vehicles of a SUMO vehicle type (study/fleet_section.h). */
+typedef struct cp_study_market {
+    char *type;
+    char *vehicle_class;
+    double share_1; /* [0, 1] */
+    size_t line;    /* in the study file */
+} cp_study_market;
+
 /* How counterfactual pairs are made; the design's own section, all of it optional. */
 typedef struct cp_study_counterfactual {
     double checkpoint_interval_s; /* default 2; [0.5, 60] */
@@ -74,6 +82,9 @@ typedef struct cp_study {
     size_t variant_count;
     cp_study_vehicle *vehicles; /* [0] is the default, which may name no model */
     size_t vehicle_count;
+    bool has_fleet; /* cars are drawn from vehicle classes */
+    cp_study_market *market;
+    size_t market_count;
 } cp_study;
 
 /* A zero-initialised one is fine too. */
@@ -94,5 +105,10 @@ CP_MUST_CHECK cp_status cp_study_tell_options(const cp_study *study, cp_error *e
 
 /* By name; NULL when there is none. */
 const cp_study_scenario *cp_study_find_scenario(const cp_study *study, const char *name);
+
+/* A function of the study that comes from a library, for k = 0, 1, ... each file once; NULL: no
+ * more. variant: the first that has it. */
+const cp_library *cp_study_library(const cp_study *study, size_t k,
+                                   const cp_study_variant **variant);
 
 #endif

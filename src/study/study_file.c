@@ -4,6 +4,8 @@
 #include "core/file.h"
 #include "study/control_section.h"
 #include "study/study_schema.h"
+#include "study/fleet_section.h"
+#include "study/library_section.h"
 #include "study/sumo_configuration.h"
 
 #include <ctype.h>
@@ -216,13 +218,17 @@ static cp_status take_controls(const cp_yaml_file *file, cp_control_kind kind,
                                                    &(*settings)[k], error);
         (*settings_count)++;
         if (status == CP_OK)
+            status = cp_library_section_read(file, path, raw[k].name, raw[k].library, raw[k].as,
+                                             raw[k].data, &(*settings)[k], error);
+        if (status == CP_OK)
             status = take_equipment(file, path, &raw[k], &(*settings)[k], error);
         if (status != CP_OK)
             return status;
         // Draws depend on the control's name: the same twice would act in lockstep.
         for (size_t other = 0; other < k; other++)
-            if ((*settings)[other].type == (*settings)[k].type)
-                return cp_yaml_fail(file, error, path, "repeats '%s'", raw[k].name);
+            if (strcmp(cp_control_name(&(*settings)[other]), cp_control_name(&(*settings)[k])) == 0)
+                return cp_yaml_fail(file, error, path, "repeats '%s'",
+                                    cp_control_name(&(*settings)[k]));
     }
     return CP_OK;
 }
@@ -415,8 +421,12 @@ static cp_status take_vehicles(const cp_yaml_file *file, const cp_raw_vehicles *
     if (study->vehicles == NULL)
         return cp_fail_memory(error, "vehicles");
     study->vehicle_count = (size_t)raw->types_count + 1;
-    cp_status status = CP_OK;
-    if (raw->standard != NULL)
+    if (raw->standard != NULL && raw->fleet != NULL)
+        return cp_yaml_fail(file, error, "vehicles.fleet",
+                            "does not go with vehicles.default: the cars of a fleet are drawn");
+    cp_status status =
+        cp_fleet_section_take(file, raw->fleet, raw->market, raw->market_count, study, error);
+    if (status == CP_OK && raw->standard != NULL)
         status = take_model(file, "vehicles.default", raw->standard, &study->vehicles[0], error);
     for (size_t k = 0; status == CP_OK && k < raw->types_count; k++) {
         char path[KEY_PATH_SIZE];

@@ -26,7 +26,11 @@ static const cyaml_schema_value_t SHARE = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cp_raw_share, SHARE_FIELDS)};
 
 static const cyaml_schema_field_t FUNCTION_FIELDS[] = {
-    TEXT("function", cp_raw_control, name), CYAML_FIELD_IGNORE("parameters", CYAML_FLAG_OPTIONAL),
+    TEXT("function", cp_raw_control, name),
+    CYAML_FIELD_IGNORE("parameters", CYAML_FLAG_OPTIONAL),
+    TEXT_OPTIONAL("library", cp_raw_control, library),
+    TEXT_OPTIONAL("as", cp_raw_control, as),
+    TEXT_OPTIONAL("data", cp_raw_control, data),
     LIST_OPTIONAL("equipment", cp_raw_control, equipment, SHARE), CYAML_FIELD_END};
 static const cyaml_schema_value_t FUNCTION = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cp_raw_control, FUNCTION_FIELDS)};
@@ -55,7 +59,9 @@ static const cyaml_schema_value_t VEHICLE_TYPE = {
 
 static const cyaml_schema_field_t VEHICLES_FIELDS[] = {
     TEXT_OPTIONAL("default", cp_raw_vehicles, standard),
-    LIST_OPTIONAL("types", cp_raw_vehicles, types, VEHICLE_TYPE), CYAML_FIELD_END};
+    TEXT_OPTIONAL("fleet", cp_raw_vehicles, fleet),
+    LIST_OPTIONAL("types", cp_raw_vehicles, types, VEHICLE_TYPE),
+    LIST_OPTIONAL("market", cp_raw_vehicles, market, CP_MARKET_ENTRY), CYAML_FIELD_END};
 
 static const cyaml_schema_field_t COUNTERFACTUAL_FIELDS[] = {
     TEXT_OPTIONAL("checkpoint_interval_s", cp_raw_counterfactual, checkpoint_interval_s),

@@ -3,6 +3,7 @@
 #define STUDY_STUDY_SCHEMA_H
 
 #include "study/assessment_section.h"
+#include "study/fleet_section.h"
 #include "study/sweep_section.h"
 
 /* A study file as libcyaml reads it, before anything is checked or converted: everything a string,
@@ -15,6 +16,9 @@ typedef struct cp_raw_share {
 
 typedef struct cp_raw_control {
     char *name;
+    char *library; /* of a function from one, */
+    char *as;      /* its name in tables, */
+    char *data;    /* and a file for it */
     cp_raw_share *equipment;
     unsigned equipment_count;
 } cp_raw_control;
@@ -57,8 +61,11 @@ typedef struct cp_raw_vehicle_type {
 
 typedef struct cp_raw_vehicles {
     char *standard;
+    char *fleet;
     cp_raw_vehicle_type *types;
     unsigned types_count;
+    cp_market_entry *market;
+    unsigned market_count;
 } cp_raw_vehicles;
 
 typedef struct cp_raw_study {

@@ -69,7 +69,7 @@ class Suite(unittest.TestCase):
         self.assertIn("title", listed[0])
 
     def test_vehicles_are_names_or_files(self):
-        path = os.path.join(ARGS.source, "db", "vehicles", "small_car.yaml")
+        path = os.path.join(ARGS.source, "db", "vehicles", "fleet", "small_car.yaml")
         found = rows("--vehicle", path, "--vehicle", "suv")
         self.assertEqual([row["vehicle"] for row in found[:3:2]], ["small_car", "suv"])
         foreign = [row for row in found if row["class"] == "olc_table"]

@@ -38,7 +38,7 @@ background: {{duration_s: 0}}
 vehicles:
   default: {vehicles}/honda_accord_2014.yaml
   types:
-    - {{type: small_car, model: {vehicles}/small_car.yaml}}
+    - {{type: small_car, model: {vehicles}/fleet/small_car.yaml}}
     - {{type: mid_size_car, model: {vehicles}/mid_size.yaml}}
     - {{type: suv, model: {vehicles}/suv.yaml}}
     - {{type: van, model: {vehicles}/van.yaml}}

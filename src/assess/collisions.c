@@ -5,6 +5,7 @@
 #include "impact/confirmation.h"
 #include "impact/footprint.h"
 #include "impact/recorded_contact.h"
+#include "run/contact_rows.h"
 #include "run/crash_record.h"
 
 #include <math.h>
@@ -153,7 +154,7 @@ static cp_status lead_in(collision_view *view, cp_error *error)
         cp_rectangle rectangle[2];
         for (int v = 0; v < 2; v++) {
             state[v] = step_back(state[v], way_back_of(view, v), view->step_length_s);
-            rectangle[v] = cp_footprint_of_state(&state[v]);
+            rectangle[v] = cp_vehicle_rectangle(&state[v]);
         }
         are_apart = cp_rectangle_separation(&rectangle[0], &rectangle[1]) > 0.0;
         steps++;
@@ -183,35 +184,22 @@ static cp_status add_crash(const collision_view *view, const cp_impact *impact,
 static cp_status add_contact(const collision_view *view, const cp_impact *impact,
                              cp_result_rows *results, cp_error *error)
 {
-    cp_contact_row *row = cp_result_rows_add_contact(results);
-    if (row == NULL)
-        return cp_fail_memory(error, "contact");
-    row->time_s = impact->time_s;
-    row->contact_m = impact->contact_m;
-    row->verdict = cp_contact_verdict_text(impact->verdict);
-    for (int role = 0; role < 2; role++) {
-        row->vehicle[role] = strdup(view->listed->id[impact->vehicle[role]]);
-        if (row->vehicle[role] == NULL)
-            return cp_fail_memory(error, "contact");
-    }
-    return CP_OK;
+    const char *const ids[2] = {view->listed->id[impact->vehicle[0]],
+                                view->listed->id[impact->vehicle[1]]};
+    return cp_contact_rows_add(results, impact, cp_contact_verdict_text(impact->verdict), ids,
+                               error);
 }
 
 static cp_status add_report(const collision_view *view, const char *found_as, double gap_m,
                             cp_result_rows *results, cp_error *error)
 {
-    cp_sumo_collision_row *row = cp_result_rows_add_sumo_collision(results);
-    if (row == NULL)
-        return cp_fail_memory(error, "collision of SUMO");
-    row->time_s = view->listed->time_s + view->sumo_step_s;
-    row->collider = strdup(view->listed->id[0]);
-    row->victim = strdup(view->listed->id[1]);
-    row->type = strdup(view->listed->kind);
-    row->found_as = found_as;
-    row->gap_m = isfinite(gap_m) ? gap_m : NAN;
-    return row->collider != NULL && row->victim != NULL && row->type != NULL
-               ? CP_OK
-               : cp_fail_memory(error, "collision of SUMO");
+    const cp_reported_collision report = {.time_s = view->listed->time_s + view->sumo_step_s,
+                                          .collider = view->listed->id[0],
+                                          .victim = view->listed->id[1],
+                                          .type = view->listed->kind,
+                                          .found_as = found_as,
+                                          .gap_m = gap_m};
+    return cp_contact_rows_add_report(results, &report, error);
 }
 
 // Carried through the step in which SUMO took them away, and that step is long: what turned before,

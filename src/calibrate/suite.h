@@ -43,7 +43,8 @@ typedef struct cp_suite_comparison {
     cp_suite_numbers low;                /* corridor, likewise */
     cp_suite_numbers high;
     bool relative;
-    int car; /* of a table of pairs: 1 or 2, this one only; 0: every one that has the quantity */
+    int car; /* of struck or a table of pairs: 1 or 2, this one only; 0: every one that has the
+                quantity */
     cp_suite_bar bar;
 } cp_suite_comparison;
 
@@ -70,7 +71,7 @@ typedef struct cp_suite_class {
     cp_suite_form form;
     char *table_path;             /* owned; NULL for lists */
     bool is_reference;            /* the table lies in the folder of references */
-    cp_suite_texts rows_with;     /* separation: these barriers only */
+    cp_suite_texts rows_with;     /* separation: these barriers only; struck: these sides */
     cp_suite_numbers speeds_km_h; /* cases: every speed with every overlap, side and angle */
     cp_suite_numbers opponent_speeds_km_h; /* empty: the same; else one a speed */
     cp_suite_numbers overlaps_1;           /* share of the car's width; empty: middle on middle */
@@ -87,7 +88,7 @@ typedef struct cp_suite_class {
                                        * on the rear, from its centre of gravity; empty: 0 */
     cp_suite_numbers struck_forces_1; /* times the forces of its side and rear; empty: 1 */
     cp_suite_texts against;           /* "same", shipped names or paths; empty: barrier only */
-    cp_suite_comparison *comparison; /* owned */
+    cp_suite_comparison *comparison;  /* owned */
     size_t comparison_count;
 } cp_suite_class;
 

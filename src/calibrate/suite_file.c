@@ -290,7 +290,8 @@ static cp_status read_sweep(const place *at, const cp_suite_yaml_sweep *yaml, cp
                : status;
 }
 
-static cp_status read_places(const place *at, const cp_suite_yaml_places *yaml, cp_suite_class *class)
+static cp_status read_places(const place *at, const cp_suite_yaml_places *yaml,
+                             cp_suite_class *class)
 {
     double from_mm = 0.0, to_mm = 0.0;
     cp_status status = read_number(at, "at_sweep.from_mm", yaml->from_mm, -8000, 8000, &from_mm);
@@ -317,7 +318,8 @@ static cp_status read_sides(const place *at, const cp_suite_yaml_class *yaml, cp
     return CP_OK;
 }
 
-static cp_status read_struck(const place *at, const cp_suite_yaml_class *yaml, cp_suite_class *class)
+static cp_status read_struck(const place *at, const cp_suite_yaml_class *yaml,
+                             cp_suite_class *class)
 {
     class->is_struck = yaml->struck != NULL;
     class->is_struck_on_rear = class->is_struck && strcmp(yaml->struck, "rear") == 0;

@@ -42,7 +42,8 @@ static const cyaml_schema_value_t COMPARISON_VALUE = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cp_suite_yaml_comparison, COMPARISON_FIELDS)};
 
 static const cyaml_schema_field_t BARRIER_FIELDS[] = {
-    TEXT(width_m, cp_suite_yaml_barrier), TEXT(depth_m, cp_suite_yaml_barrier),
+    TEXT(width_m, cp_suite_yaml_barrier),
+    TEXT(depth_m, cp_suite_yaml_barrier),
     TEXT(corner_radius_m, cp_suite_yaml_barrier),
     OPTIONAL_TEXT(mass_kg, cp_suite_yaml_barrier),
     OPTIONAL_TEXT(yaw_inertia_kg_m2, cp_suite_yaml_barrier),

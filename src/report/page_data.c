@@ -4,6 +4,7 @@
 #include "analysis/any_vehicle.h"
 #include "analysis/caveats.h"
 #include "analysis/comparison.h"
+#include "analysis/false_activations.h"
 #include "analysis/network_background.h"
 #include "analysis/query_json.h"
 #include "analysis/slice_sample.h"
@@ -289,6 +290,7 @@ typedef struct page_parts {
     json_t *backgrounds;
     json_t *caveats;
     json_t *assessment;
+    json_t *activations;
     cp_corridor_pulses pulses;
     unsigned char *chosen;
     bool *drawn; /* of each crash */
@@ -348,6 +350,8 @@ static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t b
         status = caveats_json(store, &p->caveats, error);
     if (status == CP_OK)
         status = cp_assessment_record_json(data, &p->assessment, error);
+    if (status == CP_OK)
+        status = cp_false_activations_json(store, &p->activations, error);
     return status;
 }
 
@@ -362,7 +366,7 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     if (status == CP_OK) {
         *page = json_pack(
             "{s:O, s:O, s:O, s:I, s:o, s:o, s:o, s:o, s:O, s:O, s:o, s:o, s:O, s:O, s:O, s:O, s:O, "
-            "s:o, s:o}",
+            "s:o, s:o, s:O}",
             "assessment", p.assessment, "study",
             json_array_get(json_object_get(data->about, "study"), 0), "about", data->about,
             "unfinished", (json_int_t)data->unfinished, "scenarios", scenarios_json(data),
@@ -375,7 +379,7 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
                       (json_int_t)p.frontal, "pulses", (json_int_t)CP_CORRIDOR_PULSES_MAX),
             "networks", p.networks, "gallery", p.gallery, "pairs", p.pairs, "backgrounds",
             p.backgrounds, "caveats", p.caveats, "risks", risks_json(data), "queries",
-            queries_json());
+            queries_json(), "activations", p.activations);
         if (!*page)
             status = cp_fail_memory(error, "the data of a report");
     }
@@ -389,6 +393,7 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     json_decref(p.backgrounds);
     json_decref(p.caveats);
     json_decref(p.assessment);
+    json_decref(p.activations);
     cp_corridor_destroy(&p.pulses);
     free(p.chosen);
     free(p.drawn);

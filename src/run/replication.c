@@ -2,6 +2,7 @@
 #include "run/replication.h"
 
 #include "core/log.h"
+#include "run/contact_rows.h"
 #include "run/counterfactual.h"
 #include "run/crash_record.h"
 #include "run/probe_outputs.h"
@@ -167,20 +168,11 @@ static cp_status record_crashes(replication_run *run, cp_error *error)
 static cp_status record_contact(replication_run *run, const cp_found_contact *found,
                                 cp_error *error)
 {
-    const cp_impact *impact = &found->impact;
-    cp_contact_row *row = cp_result_rows_add_contact(run->results);
-    if (row == NULL)
-        return cp_fail_memory(error, "contact");
-    row->time_s = impact->time_s;
-    row->contact_m = impact->contact_m;
-    row->verdict = cp_found_as_text(found->found_as);
-    for (int role = 0; role < 2; role++) {
-        row->vehicle[role] =
-            strdup(cp_traffic_vehicle_id(run->simulation.traffic, impact->vehicle[role]));
-        if (row->vehicle[role] == NULL)
-            return cp_fail_memory(error, "contact");
-    }
-    return CP_OK;
+    const cp_traffic *traffic = run->simulation.traffic;
+    const char *const ids[2] = {cp_traffic_vehicle_id(traffic, found->impact.vehicle[0]),
+                                cp_traffic_vehicle_id(traffic, found->impact.vehicle[1])};
+    return cp_contact_rows_add(run->results, &found->impact, cp_found_as_text(found->found_as), ids,
+                               error);
 }
 
 static cp_status record_contacts(replication_run *run, cp_error *error)
@@ -210,25 +202,26 @@ static cp_status record_cross_check(replication_run *run, const cp_replication_r
                                     cp_error *error)
 {
     cp_cross_check *check = &run->simulation.check;
+    const cp_traffic *traffic = run->simulation.traffic;
     size_t unexplained = 0, first = 0;
+    cp_status status = CP_OK;
     cp_cross_check_match(check);
-    for (size_t k = 0; k < check->sumo_count; k++) {
-        cp_cross_check_pair *pair = &check->sumo[k];
-        cp_sumo_collision_row *row = cp_result_rows_add_sumo_collision(run->results);
-        if (row == NULL)
-            return cp_fail_memory(error, "collision of SUMO");
-        row->time_s = pair->time_s;
-        row->collider = strdup(cp_traffic_vehicle_id(run->simulation.traffic, pair->collider));
-        row->victim = strdup(cp_traffic_vehicle_id(run->simulation.traffic, pair->victim));
-        row->type = strdup(pair->type);
-        row->found_as = cp_found_as_text(pair->found_as);
-        row->gap_m = isfinite(pair->gap_m) ? pair->gap_m : NAN;
-        if (row->collider == NULL || row->victim == NULL || row->type == NULL)
-            return cp_fail_memory(error, "collision of SUMO");
+    for (size_t k = 0; status == CP_OK && k < check->sumo_count; k++) {
+        const cp_cross_check_pair *pair = &check->sumo[k];
+        const cp_reported_collision report = {
+            .time_s = pair->time_s,
+            .collider = cp_traffic_vehicle_id(traffic, pair->collider),
+            .victim = cp_traffic_vehicle_id(traffic, pair->victim),
+            .type = pair->type,
+            .found_as = cp_found_as_text(pair->found_as),
+            .gap_m = pair->gap_m};
+        status = cp_contact_rows_add_report(run->results, &report, error);
         bool is_apart = isfinite(pair->gap_m) && pair->gap_m > 0.0;
         if (pair->found_as == CP_FOUND_NO_CONTACT && !is_apart && unexplained++ == 0)
             first = run->results->sumo_collision_count - 1;
     }
+    if (status != CP_OK)
+        return status;
     // All are stored with what they were found as; what nothing explains is said.
     if (unexplained > 0) {
         const cp_sumo_collision_row *row = &run->results->sumo_collision[first];

@@ -241,8 +241,8 @@ static double gap_of(const cp_traffic *traffic, const cp_sumo_collision *collisi
     const cp_vehicle_motion *other = cp_traffic_motion_of(traffic, collision->victim);
     if (one == NULL || other == NULL)
         return INFINITY;
-    cp_rectangle rectangle[2] = {cp_footprint_of_state(&one->after),
-                                 cp_footprint_of_state(&other->after)};
+    cp_rectangle rectangle[2] = {cp_vehicle_rectangle(&one->after),
+                                 cp_vehicle_rectangle(&other->after)};
     return cp_rectangle_separation(&rectangle[0], &rectangle[1]);
 }
 

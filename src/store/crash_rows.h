@@ -30,11 +30,11 @@ typedef struct cp_crash_vehicle_row {
     double width_m;
     double velocity_angle_rad;
     cp_contact_side side;
-    unsigned outside;     /* validity set, 0 = inside */
+    unsigned outside;           /* validity set, 0 = inside */
     const char *evidence_class; /* static text: class of tests that speaks for it; NULL: none */
     double class_error_1;       /* relative error of severity in that class; NAN: not known */
-    cp_severity severity; /* with the OLC status that holds; NAN where there is no value */
-    double crush_m;       /* NAN when the simulation failed, as the next two */
+    cp_severity severity;       /* with the OLC status that holds; NAN where there is no value */
+    double crush_m;             /* NAN when the simulation failed, as the next two */
     double absorbed_j;
     double ees_m_s;
     double intrusion_m;             /* NAN when the simulation failed */

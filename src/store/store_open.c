@@ -17,7 +17,6 @@
 #include <time.h>
 #include <unistd.h>
 
-
 char *cp_store_file_name(const char *path)
 {
     bool clear = path[0] == '/' || path[0] == '.';

@@ -224,7 +224,8 @@ cp_status cp_input_file_read(const char *path, const cp_input_search *wanted, cp
     if (status != CP_OK)
         return status;
     if (is_compressed(content, size)) {
-        cp_hash_bytes(content, size, file->hash);
+        if (wanted->hash)
+            cp_hash_bytes(content, size, file->hash);
         status = inflate_file(path, &plain, &plain_size, error);
         if (status == CP_OK)
             status = look_inside(&s, plain, plain_size, error);
@@ -235,7 +236,8 @@ cp_status cp_input_file_read(const char *path, const cp_input_search *wanted, cp
             remove_comments(content);
             size = strlen(content);
         }
-        cp_hash_bytes(content, size, file->hash);
+        if (wanted->hash)
+            cp_hash_bytes(content, size, file->hash);
         status = look_inside(&s, content, size, error);
     }
     free(plain);

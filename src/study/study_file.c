@@ -3,9 +3,9 @@
 
 #include "core/file.h"
 #include "study/control_section.h"
-#include "study/study_schema.h"
 #include "study/fleet_section.h"
 #include "study/library_section.h"
+#include "study/study_schema.h"
 #include "study/sumo_configuration.h"
 
 #include <ctype.h>

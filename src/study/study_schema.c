@@ -31,7 +31,8 @@ static const cyaml_schema_field_t FUNCTION_FIELDS[] = {
     TEXT_OPTIONAL("library", cp_raw_control, library),
     TEXT_OPTIONAL("as", cp_raw_control, as),
     TEXT_OPTIONAL("data", cp_raw_control, data),
-    LIST_OPTIONAL("equipment", cp_raw_control, equipment, SHARE), CYAML_FIELD_END};
+    LIST_OPTIONAL("equipment", cp_raw_control, equipment, SHARE),
+    CYAML_FIELD_END};
 static const cyaml_schema_value_t FUNCTION = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, cp_raw_control, FUNCTION_FIELDS)};
 

@@ -16,7 +16,7 @@ PROVENANCE = {
     "background_run": {"crashpulse_version"},
     "comparison": {"crashpulse_version"},
 }
-SHOWN = 3  # differing rows of a table
+SHOWN = 1  # differing rows of a table, from each
 
 
 def exact(value):
@@ -49,7 +49,7 @@ def first_difference(columns, only_one, only_two):
     """The column in which the first rows of both differ, with its two values."""
     for name, one, two in zip(columns, only_one[0], only_two[0]):
         if one != two:
-            return f"{name}: {one[:200]} | {two[:200]}"
+            return f"{name}: {one[:60]} | {two[:60]}"
     return "how often a row is there"
 
 
@@ -72,7 +72,7 @@ def differences(one, two):
         if only_a and only_b:
             lines.append("  " + first_difference(columns, only_a, only_b))
         for where, only in ((one, only_a), (two, only_b)):
-            lines += [f"  only in {where}: {' '.join(row)[:300]}" for row in only[:SHOWN]]
+            lines += [f"  only in {where}: {' '.join(row)[:160]}" for row in only[:SHOWN]]
     return lines
 
 

@@ -87,7 +87,7 @@ class Suite(unittest.TestCase):
         self.assertIn("kept", {row["result"] for row in found})
 
     def test_what_is_wrong_is_said(self):
-        self.assertIn("'racer' is no vehicle", call("--suite", SUITE, "--vehicle", "racer", code=2).stderr)
+        self.assertIn("no vehicle 'racer' is shipped", call("--suite", SUITE, "--vehicle", "racer", code=2).stderr)
         self.assertIn("absent.yaml", call("--suite", "absent.yaml", code=2).stderr)
         self.assertIn("go with --suite", call("--vehicle", "suv", code=2).stderr)
         self.assertIn("choose vehicles with --vehicle", call("--suite", SUITE, "car.yaml", code=2).stderr)

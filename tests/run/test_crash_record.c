@@ -293,9 +293,8 @@ static bool slide_to_touch(cp_impact *impact, cp_vec2 middle_m, cp_touching_body
         b->front_x_m = front_m.x;
         b->front_y_m = front_m.y;
         for (int role = 0; role < 2; role++)
-            body[role] =
-                (cp_touching_body){.rectangle = cp_footprint_of_state(&impact->state[role]),
-                                   .front_velocity_m_s = impact->front_velocity_m_s[role]};
+            body[role] = (cp_touching_body){.rectangle = cp_vehicle_rectangle(&impact->state[role]),
+                                            .front_velocity_m_s = impact->front_velocity_m_s[role]};
         bool apart = cp_rectangle_separation(&body[0].rectangle, &body[1].rectangle) > 0.0;
         if (k == 0 && !apart)
             return false;

@@ -120,6 +120,8 @@ expect "cars of function_at_contact" "$(sum 5 function_at_contact)" \
     "$(one "SELECT count(*) FROM crash_function AS f JOIN crash AS c ON c.id = f.crash_id WHERE c.crash_type LIKE 'front-%'")"
 expect "cars of crash_partners" "$(sum 6 crash_partners)" \
     "$(one 'SELECT count(*) FROM crash_vehicle WHERE frontal = 1 AND mass_kg IS NOT NULL')"
+expect "vehicles of struck_sides" "$(sum 5 struck_sides)" \
+    "$(one 'SELECT count(*) FROM crash_vehicle WHERE frontal = 0 AND intrusion_m IS NOT NULL')"
 expect "last rows of convergence" \
     "$(shell <"$queries/convergence.sql" | awk -F'|' '$2 == 7 { print $3 "|" $5 }' | paste -sd' ')" \
     "$(one "SELECT group_concat(frontal_crashes || '|' || round(olc_median_g, 2), ' ') FROM

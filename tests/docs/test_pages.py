@@ -24,6 +24,7 @@ PAGES += [f"sumo_scenarios/{name}/README.md" for name in
           ("adas_comparison", "crossing", "demo", "head_on_drift", "head_on_overtaking", "left_turn", "null_treatment",
            "town")]
 PAGES_ELSEWHERE = {"sumo_scenarios/own_function/README.md": "tests/run/test_own_function.py",
+                   "sumo_scenarios/ncap/README.md": "tests of crashpulse matrix",
                    "db/vehicles/fleet/README.md": "describes files; tests of its fits"}
 
 # Lines that are not run here, by their beginning, and what runs them.

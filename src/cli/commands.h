@@ -10,6 +10,7 @@ CP_MUST_CHECK cp_status cmd_init(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_doctor(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_reference(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_run(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_matrix(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_plan(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_background(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_assess(int argc, char **argv, cp_error *error);

@@ -22,6 +22,7 @@ static const command COMMAND[] = {
     {"doctor", cmd_doctor, "see whether everything that is needed works"},
     {"reference", cmd_reference, "what every key of the input files means"},
     {"run", cmd_run, "simulate a study: traffic, crashes, pulses, into a database"},
+    {"matrix", cmd_matrix, "run a function through a matrix of two-car encounters"},
     {"plan", cmd_plan, "show what a study would run"},
     {"background", cmd_background, "what contacts a network makes without driver errors"},
     {"assess", cmd_assess, "put ready collisions through the surrogate"},

@@ -25,16 +25,21 @@ static char *file_name(const char *library)
     return strndup(begin, length);
 }
 
-// The name stands in front of counters and beside the names of ours.
-static cp_status check_name(const cp_yaml_file *file, const char *entry_path, const char *key,
-                            const char *name, cp_error *error)
+// Letters, digits, '_', '-' or '.': it stands in front of counters and beside the names of ours.
+static bool is_name(const char *name)
 {
-    char path[KEY_PATH_SIZE];
     size_t length = strlen(name);
     bool good = length > 0 && length <= NAME_CHARACTERS_MAX;
     for (const char *c = name; good && *c != '\0'; c++)
         good = isalnum((unsigned char)*c) || strchr("_-.", *c) != NULL;
-    if (good)
+    return good;
+}
+
+static cp_status check_name(const cp_yaml_file *file, const char *entry_path, const char *key,
+                            const char *name, cp_error *error)
+{
+    char path[KEY_PATH_SIZE];
+    if (is_name(name))
         return CP_OK;
     snprintf(path, sizeof path, "%s.%s", entry_path, key);
     return cp_yaml_fail(file, error, path,
@@ -88,6 +93,28 @@ cp_status cp_library_section_read(const cp_yaml_file *file, const char *entry_pa
         status = take_file(file, entry_path, "library", library, &own->path, own->hash, error);
     if (status == CP_OK && data != NULL)
         status = take_file(file, entry_path, "data", data, &own->data_path, own->data_hash, error);
+    return status;
+}
+
+cp_status cp_library_from_file(const char *path, cp_library **library, cp_error *error)
+{
+    cp_library *own = calloc(1, sizeof *own);
+    *library = NULL;
+    if (own == NULL)
+        return cp_fail_memory(error, path);
+    own->written = strdup(path);
+    own->path = strdup(path);
+    own->name = file_name(path);
+    cp_status status = cp_hash_file(path, own->hash, error);
+    if (own->written == NULL || own->path == NULL || own->name == NULL)
+        status = cp_fail_memory(error, path);
+    else if (status == CP_OK && !is_name(own->name))
+        status = cp_fail(error, CP_BAD_INPUT, "%s: makes the name '%s' of a function", path,
+                         own->name);
+    if (status == CP_OK)
+        *library = own;
+    else
+        cp_library_destroy(own);
     return status;
 }
 

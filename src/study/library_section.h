@@ -14,4 +14,9 @@ CP_MUST_CHECK cp_status cp_library_section_read(const cp_yaml_file *file, const 
                                                 const char *as, const char *data,
                                                 cp_control_settings *settings, cp_error *error);
 
+/* A library that no file describes: its path as seen from here, named as by default. The caller
+ * destroys *library. Errors: CP_BAD_INPUT for a file that cannot be read or makes no name. */
+CP_MUST_CHECK cp_status cp_library_from_file(const char *path, cp_library **library,
+                                             cp_error *error);
+
 #endif

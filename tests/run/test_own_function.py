@@ -3,6 +3,7 @@
 the header, in a study; ours built as libraries, which give the databases of the built-in ones; and
 faulty ones, which fail their replications by name and nothing else."""
 import argparse
+import json
 import pathlib
 import shutil
 import sqlite3
@@ -12,6 +13,8 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "builders"))
 import crossing_study
+import own_study
+from own_study import assert_same, messages
 
 parser = argparse.ArgumentParser()
 parser.add_argument("--crashpulse", required=True)
@@ -23,80 +26,13 @@ arguments.crashpulse = str(pathlib.Path(arguments.crashpulse).resolve())
 libraries = pathlib.Path(arguments.libraries)
 EXAMPLE = pathlib.Path(arguments.source) / "sumo_scenarios/own_function"
 
-STUDY = """study: own
-design: {design}
-seed: 5
-replications: {replications}
-duration_s: {duration_s}
-scenarios:
-  - name: crossing
-    sumocfg: net/crossing.sumocfg
-    driver_errors:
-      - {{model: failed_to_see, parameters: {{probability_1: 1}}}}
-variants:
-  - name: baseline
-{variants}
-background: {{duration_s: 0}}
-vehicles: {{default: car.yaml}}
-"""
 
-
-def study_in(folder, variants, design="paired_seeds", replications=2, duration_s=40):
-    """variants: {name: [text of each function]}."""
-    folder.mkdir(parents=True, exist_ok=True)
-    if not (folder / "net").exists():
-        shutil.copytree(arguments.network, folder / "net")
-    (folder / "car.yaml").write_text("vehicle: car\nparameters: []\n")
-    text = "".join(f"  - name: {name}\n    functions:\n" +
-                   "".join(f"      - {function}\n" for function in functions)
-                   for name, functions in variants.items())
-    study = folder / "study.yaml"
-    study.write_text(STUDY.format(design=design, replications=replications, duration_s=duration_s,
-                                  variants=text))
-    return study
+def study_in(folder, variants, *how, **more):
+    return own_study.study_in(folder, arguments.network, variants, *how, **more)
 
 
 def run(study, db, *words, expect=0):
-    return crossing_study.run(arguments.crashpulse, "run", study, "--db", db, "--allow-plugins",
-                              *words, expect=expect)
-
-
-def messages(db):
-    """{variant: [messages of its failed attempts]}, and the variants that are done."""
-    failed, done = {}, set()
-    for name, status, text in sqlite3.connect(db).execute(
-            "SELECT v.name, r.status, a.message FROM replication r JOIN variant v ON v.id = r.variant_id"
-            " JOIN attempt a ON a.replication_id = r.id"):
-        if status == "failed":
-            failed.setdefault(name, []).append(text)
-        else:
-            done.add(name)
-    return failed, done
-
-
-def rows(db):
-    """As crossing_study.rows, less what names files and their hashes."""
-    connection = sqlite3.connect(db)
-    found = {}
-    for (table,) in connection.execute("SELECT name FROM sqlite_schema WHERE type = 'table' AND name "
-                                       "NOT LIKE 'sqlite_%'").fetchall():
-        columns = [c[1] for c in connection.execute(f"PRAGMA table_info({table})")]
-        kept = [c for c in columns if (table, c) not in {
-            ("study", "yaml"), ("study", "hash"), ("variant", "functions"),
-            ("replication", "configuration_hash"), ("background_run", "configuration_hash")}]
-        if table not in ("attempt", "merge_source"):
-            names = ", ".join(f'"{c}"' for c in kept)
-            found[table] = sorted(connection.execute(f"SELECT {names} FROM {table}").fetchall(), key=repr)
-    return found
-
-
-def assert_same(db, other):
-    one, two = rows(db), rows(other)
-    assert one.keys() == two.keys()
-    for table in one:
-        assert one[table] == two[table], (table, [r for r in one[table] if r not in two[table]][:2],
-                                          [r for r in two[table] if r not in one[table]][:2])
-    assert len(one["crash"]) > 0, "nothing to compare"
+    return own_study.run(arguments.crashpulse, study, db, *words, expect=expect)
 
 
 def the_example_in_its_study(folder):
@@ -133,6 +69,12 @@ def the_example_in_its_study(folder):
     acts = dict(sqlite3.connect(db).execute(
         "SELECT function, count(*) FROM counterfactual_function WHERE state = 'braking' GROUP BY 1"))
     print("outcomes", outcomes, "braking at contact", acts)
+
+    # The same through a matrix.
+    table = crossing_study.run(arguments.crashpulse, "matrix", EXAMPLE.parent / "ncap/ccfhos.yaml", "--library",
+                               own / "build/my_aeb.so", "--db", folder / "matrix.db", "--format", "json").stdout
+    cells = json.loads(table)
+    assert len(cells) == 27 and all(c["impact_km_h"] < c["without_impact_km_h"] - 5 for c in cells), table
 
     # The hash of the library is part of the configuration: another one is another study.
     source = own / "my_aeb.c"

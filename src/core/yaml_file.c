@@ -111,7 +111,7 @@ cp_status cp_yaml_parse(const char *name, const char *content, size_t size,
     if (status == CP_OK)
         status = cp_yaml_lines_read(name, content, size, &file->lines, &file->line_count, error);
     if (status == CP_OK)
-        status = cp_yaml_structure_check(file, error);
+        status = cp_yaml_structure_check(file->path, file->lines, file->line_count, schema, error);
     if (status == CP_OK)
         status = load_structure(file, content, size, error);
     if (status != CP_OK)

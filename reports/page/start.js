@@ -73,4 +73,5 @@ window.addEventListener("beforeprint", () => theme(false));
 design();
 assessment();
 reproduce();
+activations();
 update();

@@ -18,6 +18,7 @@ static const double LARGEST[COLUMN_COUNT] = {200.0, 3000.0, 90.0, 200.0};
 
 // The columns of a file: how many, and where those stand that are read.
 typedef struct columns {
+    char separator;
     size_t count;
     size_t place[COLUMN_COUNT];
 } columns;
@@ -26,7 +27,8 @@ static cp_status find_columns(const char *path, char *header, columns *found, cp
 {
     char *fields[CP_CSV_FIELDS_MAX];
     size_t *place = found->place;
-    found->count = cp_csv_split(header, fields, CP_CSV_FIELDS_MAX);
+    found->separator = cp_csv_separator(header);
+    found->count = cp_csv_split(header, found->separator, fields, CP_CSV_FIELDS_MAX);
     cp_status status = cp_csv_check_fields(path, 1, found->count, found->count, error);
     if (status != CP_OK)
         return status;
@@ -51,7 +53,7 @@ static cp_status read_case(const char *path, size_t line_number, char *line, con
                            cp_reference_case *row, cp_error *error)
 {
     char *fields[CP_CSV_FIELDS_MAX];
-    size_t count = cp_csv_split(line, fields, CP_CSV_FIELDS_MAX);
+    size_t count = cp_csv_split(line, found->separator, fields, CP_CSV_FIELDS_MAX);
     double value[COLUMN_COUNT];
     cp_status status = cp_csv_check_fields(path, line_number, count, found->count, error);
     if (status != CP_OK)

@@ -10,7 +10,7 @@
 /* Crash pulses a vehicle model is held against: of a real test (EV5 folder) or a file of the form
  * `crashpulse crash --pulse` writes. */
 
-enum { CP_PULSE_SENSORS_MAX = 8 };
+enum { CP_PULSE_SENSORS_MAX = 8 }; /* CP_PULSE_CURVES_MAX of exchange */
 
 /* What a pulse shows at a glance; NAN: it does not. */
 typedef struct cp_pulse_marks {

@@ -2,10 +2,10 @@
 #include "calibrate/suite_case.h"
 
 #include "calibrate/reference.h"
-#include "core/csv_table.h"
+#include "calibrate/suite_struck.h"
 #include "core/file.h"
 #include "core/units.h"
-#include "crash/shipped_vehicle.h"
+#include "crash/named_vehicle.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,7 +19,8 @@ static const double UNKNOWN_OVERLAP_1[] = {0.2, 0.4, 0.6, 0.8, 1.0};
 int cp_suite_case_cars(const cp_suite_class *class, const cp_suite_comparison *comparison)
 {
     cp_suite_quantity quantity = comparison->quantity;
-    bool both = class->form == CP_SUITE_OBLIQUE || class->form == CP_SUITE_RECONSTRUCTED;
+    bool both = class->form == CP_SUITE_OBLIQUE || class->form == CP_SUITE_RECONSTRUCTED ||
+                class->form == CP_SUITE_STRUCK;
     bool of_each = quantity == CP_SUITE_delta_v_m_s || quantity == CP_SUITE_yaw_rate_deg_s;
     return both && of_each && comparison->car == 0 ? 2 : 1;
 }
@@ -27,24 +28,12 @@ int cp_suite_case_cars(const cp_suite_class *class, const cp_suite_comparison *c
 cp_status cp_suite_vehicle(const char *base, const char *text, cp_vehicle_model *model,
                            cp_error *error)
 {
-    cp_shipped_vehicle shipped;
-    if (cp_shipped_vehicle_find(text, &shipped))
-        return cp_vehicle_model_parse(shipped.name, shipped.yaml, shipped.size, model, error);
-    if (!cp_shipped_vehicle_is_path(text))
-        return cp_fail(error, CP_BAD_INPUT,
-                       "'%s' is no vehicle: allowed are the path of a file, or one of %s", text,
-                       cp_shipped_vehicle_names());
-    char *path = base != NULL ? cp_file_beside(base, text) : strdup(text);
-    cp_status status =
-        path != NULL ? cp_vehicle_model_load(path, model, error) : cp_fail_memory(error, text);
-    free(path);
-    return status;
+    return cp_named_vehicle_load(base, text, model, error);
 }
 
 // ---- making cases ------------------------------------------------------------------------------
 
-// A case of the class, to be completed.
-static cp_suite_case plain_case(const cp_suite_class *class, const cp_vehicle_model *vehicle)
+cp_suite_case cp_suite_plain_case(const cp_suite_class *class, const cp_vehicle_model *vehicle)
 {
     cp_suite_case row = {.model = {*vehicle, *vehicle},
                          .has_barrier = class->has_barrier,
@@ -66,15 +55,13 @@ static double offset_of_overlap(const cp_suite_case *row, double overlap_1, doub
     return isnan(overlap_1) ? 0.0 : side_1 * (0.5 * (own_m + other_m) - overlap_1 * own_m);
 }
 
-static cp_status make_room(cp_suite_cases *cases, size_t count, cp_error *error)
+cp_status cp_suite_cases_make(cp_suite_cases *cases, size_t count, cp_error *error)
 {
     cases->row = calloc(count, sizeof *cases->row);
     return cases->row != NULL ? CP_OK : cp_fail_memory(error, "cases of a suite");
 }
 
-// A car of another mass with the same front: its yaw inertia in proportion, the parts of the front
-// as they are.
-static void set_mass(cp_vehicle_model *model, double mass_kg)
+void cp_suite_set_mass(cp_vehicle_model *model, double mass_kg)
 {
     model->yaw_inertia_kg_m2 *= mass_kg / model->mass_kg;
     model->mass_kg = mass_kg;
@@ -95,6 +82,14 @@ static void name_listed_case(const cp_suite_class *class, const cp_suite_case *r
         snprintf(label + used, size - (size_t)used, ", %+g deg", cp_deg_from_rad(row->angle_rad));
 }
 
+// The barrier as the second vehicle.
+static void set_barrier_opponent(cp_suite_case *row)
+{
+    row->model[1] = cp_vehicle_model_of_barrier(&row->barrier);
+    row->is_pair = true;
+    row->has_barrier = false;
+}
+
 // Every opponent with every speed, overlap, side and angle.
 static cp_status listed_cases(const cp_suite *suite, const cp_suite_class *class,
                               const cp_vehicle_model *vehicle, cp_suite_cases *cases,
@@ -105,23 +100,26 @@ static cp_status listed_cases(const cp_suite *suite, const cp_suite_class *class
     size_t overlaps = class->overlaps_1.count > 0 ? class->overlaps_1.count : 1;
     size_t angles = class->angles_deg.count > 0 ? class->angles_deg.count : 1;
     size_t total = opponents * speeds * overlaps * sides * angles;
-    cp_status status = make_room(cases, total, error);
+    cp_status status = cp_suite_cases_make(cases, total, error);
     for (size_t k = 0; status == CP_OK && k < total; k++) {
         size_t angle = k % angles, side = k / angles % sides,
                overlap = k / angles / sides % overlaps;
         size_t speed = k / angles / sides / overlaps % speeds;
         size_t opponent = k / angles / sides / overlaps / speeds;
         cp_suite_case *row = &cases->row[cases->count];
-        *row = plain_case(class, vehicle);
+        *row = cp_suite_plain_case(class, vehicle);
         row->is_pair = class->against.count > 0;
-        if (row->is_pair && strcmp(class->against.text[opponent], "same") != 0)
+        if (class->has_barrier && cp_barrier_is_party(&class->barrier))
+            set_barrier_opponent(row);
+        else if (row->is_pair && strcmp(class->against.text[opponent], "same") != 0)
             status =
                 cp_suite_vehicle(suite->path, class->against.text[opponent], &row->model[1], error);
         row->side_1 = class->sides_1.value[side];
         row->speed_m_s[0] = cp_m_s_from_km_h(class->speeds_km_h.value[speed]);
         row->speed_m_s[1] = class->opponent_speeds_km_h.count > 0
                                 ? cp_m_s_from_km_h(class->opponent_speeds_km_h.value[speed])
-                                : row->speed_m_s[0];
+                            : row->model[1].is_barrier ? 0.0
+                                                       : row->speed_m_s[0];
         if (class->angles_deg.count > 0)
             row->angle_rad = row->side_1 * cp_rad_from_deg(class->angles_deg.value[angle]);
         double overlap_1 = class->overlaps_1.count > 0 ? class->overlaps_1.value[overlap] : NAN;
@@ -140,11 +138,11 @@ static cp_status olc_cases(const char *path, const cp_suite_class *class,
     cp_reference table = {0};
     cp_status status = cp_reference_load(path, &table, error);
     if (status == CP_OK)
-        status = make_room(cases, table.count, error);
+        status = cp_suite_cases_make(cases, table.count, error);
     for (size_t k = 0; status == CP_OK && k < table.count; k++) {
         const cp_reference_case *test = &table.cases[k];
         cp_suite_case *row = &cases->row[cases->count++];
-        *row = plain_case(class, vehicle);
+        *row = cp_suite_plain_case(class, vehicle);
         row->barrier = vehicle->barrier;
         row->has_barrier = true;
         row->speed_m_s[0] = cp_m_s_from_km_h(test->speed_km_h);
@@ -158,16 +156,8 @@ static cp_status olc_cases(const char *path, const cp_suite_class *class,
     return status;
 }
 
-// One number of a row of a test table into *value.
-typedef struct column_read {
-    const char *column;
-    double smallest;
-    double largest;
-    double *value;
-} column_read;
-
-static cp_status read_columns(const cp_csv_table *table, size_t k, const column_read *columns,
-                              size_t count, cp_error *error)
+cp_status cp_suite_read_columns(const cp_csv_table *table, size_t k, const cp_suite_column *columns,
+                                size_t count, cp_error *error)
 {
     cp_status status = CP_OK;
     for (size_t c = 0; status == CP_OK && c < count; c++)
@@ -198,14 +188,14 @@ static cp_status separation_case(const cp_csv_table *table, size_t k, const cp_s
     if (!*use)
         return status;
     double overlap_1 = 0.0, *of = row->reference[0];
-    const column_read columns[] = {
+    const cp_suite_column columns[] = {
         {"overlap_1", 0.01, 1.0, &overlap_1},
         {"speed_m_s", 0.1, 60.0, &row->speed_m_s[0]},
         {"dvx_m_s", -60.0, 60.0, &of[CP_SUITE_separation_dvx_m_s]},
         {"dvy_m_s", -60.0, 60.0, &of[CP_SUITE_separation_dvy_m_s]},
         {"yaw_rate_deg_s", -1000.0, 1000.0, &of[CP_SUITE_yaw_rate_deg_s]},
     };
-    status = read_columns(table, k, columns, sizeof columns / sizeof *columns, error);
+    status = cp_suite_read_columns(table, k, columns, sizeof columns / sizeof *columns, error);
     row->offset_m[0] = offset_of_overlap(row, overlap_1, row->side_1);
     return status == CP_OK ? name_test(table, k, row, error) : status;
 }
@@ -218,7 +208,7 @@ static cp_status oblique_case(const cp_csv_table *table, size_t k, cp_suite_case
 {
     double heading_deg[2], centre_m[2], centre_deg[2];
     double *one = row->reference[0], *two = row->reference[1];
-    const column_read columns[] = {
+    const cp_suite_column columns[] = {
         {"speed_1_m_s", 0.0, 60.0, &row->speed_m_s[0]},
         {"speed_2_m_s", 0.0, 60.0, &row->speed_m_s[1]},
         {"heading_1_deg", -360.0, 360.0, &heading_deg[0]},
@@ -232,7 +222,8 @@ static cp_status oblique_case(const cp_csv_table *table, size_t k, cp_suite_case
         {"yaw_rate_change_1_deg_s", -2000.0, 2000.0, &one[CP_SUITE_yaw_rate_deg_s]},
         {"yaw_rate_change_2_deg_s", -2000.0, 2000.0, &two[CP_SUITE_yaw_rate_deg_s]},
     };
-    cp_status status = read_columns(table, k, columns, sizeof columns / sizeof *columns, error);
+    cp_status status =
+        cp_suite_read_columns(table, k, columns, sizeof columns / sizeof *columns, error);
     if (status != CP_OK)
         return status;
     double ratio_1 = two[CP_SUITE_delta_v_m_s] / one[CP_SUITE_delta_v_m_s];
@@ -248,7 +239,7 @@ static cp_status oblique_case(const cp_csv_table *table, size_t k, cp_suite_case
             .velocity_m_s = cp_vec2_scale(cp_vec2_heading(yaw_rad), row->speed_m_s[c])};
         row->configuration.side[c] = CP_SIDE_FRONT;
         double scale_1 = c == 0 ? sqrt(ratio_1) : 1.0 / sqrt(ratio_1);
-        set_mass(&row->model[c], scale_1 * row->model[c].mass_kg);
+        cp_suite_set_mass(&row->model[c], scale_1 * row->model[c].mass_kg);
     }
     row->is_placed = true;
     return name_test(table, k, row, error);
@@ -259,7 +250,7 @@ static cp_status reconstructed_case(const cp_csv_table *table, size_t k, cp_suit
                                     cp_error *error)
 {
     double angle_deg = 0.0, mass_kg[2];
-    const column_read columns[] = {
+    const cp_suite_column columns[] = {
         {"speed_1_m_s", 0.0, 80.0, &row->speed_m_s[0]},
         {"speed_2_m_s", 0.0, 80.0, &row->speed_m_s[1]},
         {"angle_deg", -60.0, 60.0, &angle_deg},
@@ -268,12 +259,13 @@ static cp_status reconstructed_case(const cp_csv_table *table, size_t k, cp_suit
         {"delta_v_1_m_s", 0.1, 100.0, &row->reference[0][CP_SUITE_delta_v_m_s]},
         {"delta_v_2_m_s", 0.1, 100.0, &row->reference[1][CP_SUITE_delta_v_m_s]},
     };
-    cp_status status = read_columns(table, k, columns, sizeof columns / sizeof *columns, error);
+    cp_status status =
+        cp_suite_read_columns(table, k, columns, sizeof columns / sizeof *columns, error);
     if (status != CP_OK)
         return status;
     row->angle_rad = cp_rad_from_deg(angle_deg);
     for (int c = 0; c < 2; c++)
-        set_mass(&row->model[c], mass_kg[c]);
+        cp_suite_set_mass(&row->model[c], mass_kg[c]);
     const size_t overlaps = sizeof UNKNOWN_OVERLAP_1 / sizeof *UNKNOWN_OVERLAP_1;
     row->offset_count = 2 * overlaps;
     for (size_t o = 0; o < row->offset_count; o++)
@@ -289,23 +281,25 @@ static cp_status table_cases(const char *path, const cp_suite_class *class,
     cp_csv_table table = {0};
     cp_status status = cp_csv_table_load(path, &table, error);
     if (status == CP_OK)
-        status = make_room(cases, table.row_count, error);
+        status = cp_suite_cases_make(cases, table.row_count, error);
     for (size_t k = 0; status == CP_OK && k < table.row_count; k++) {
         bool use = true;
         cp_suite_case *row = &cases->row[cases->count];
-        *row = plain_case(class, vehicle);
+        *row = cp_suite_plain_case(class, vehicle);
         row->is_pair = class->form != CP_SUITE_SEPARATION;
         if (class->form == CP_SUITE_SEPARATION)
             status = separation_case(&table, k, class, row, &use, error);
         else if (class->form == CP_SUITE_OBLIQUE)
             status = oblique_case(&table, k, row, error);
+        else if (class->form == CP_SUITE_STRUCK)
+            status = cp_suite_struck_case(&table, k, class, row, &use, error);
         else
             status = reconstructed_case(&table, k, row, error);
         cases->count += use;
     }
     if (status == CP_OK && cases->count == 0)
-        status = cp_fail(error, CP_BAD_INPUT, "%s: no row has the barrier '%s'", path,
-                         class->rows_with.text[0]);
+        status =
+            cp_fail(error, CP_BAD_INPUT, "%s: no row has '%s'", path, class->rows_with.text[0]);
     cp_csv_table_destroy(&table);
     return status;
 }
@@ -315,6 +309,8 @@ cp_status cp_suite_cases_of(const cp_suite *suite, const cp_suite_class *class,
                             cp_suite_cases *cases, cp_error *error)
 {
     *cases = (cp_suite_cases){0};
+    if (class->is_struck)
+        return cp_suite_struck_listed(suite, class, vehicle, cases, error);
     if (class->form == CP_SUITE_LISTS)
         return listed_cases(suite, class, vehicle, cases, error);
     size_t size = strlen(class->table_path) + (references != NULL ? strlen(references) : 0) + 2;
@@ -348,7 +344,11 @@ static cp_status simulate(const cp_suite_case *row, bool pair, double offset_m,
     const cp_vehicle_model *other = pair ? &row->model[1] : NULL;
     cp_crash_configuration configuration = row->configuration;
     cp_status status = CP_OK;
-    if (!row->is_placed)
+    if (row->struck != CP_SIDE_FRONT)
+        status = cp_crash_configuration_struck(&row->model[0], other, row->struck, offset_m,
+                                               row->angle_rad, row->speed_m_s[0], row->speed_m_s[1],
+                                               &configuration, error);
+    else if (!row->is_placed)
         status = cp_crash_configuration_from_description(
             &row->model[0], other, pair ? NULL : &row->barrier, row->speed_m_s[0],
             pair ? row->speed_m_s[1] : 0.0, offset_m, row->angle_rad, &configuration, error);

@@ -116,6 +116,8 @@ double cp_suite_quantity_of(const cp_suite_look *look, const cp_crash_result *re
         return 1e-3 * severity->peak_g * CP_G0_M_S2 * look->cell_mass_kg[c];
     case CP_SUITE_crush_mm:
         return crush_mm(pulse);
+    case CP_SUITE_struck_mm:
+        return 1e3 * result->struck[c].depth_m;
     case CP_SUITE_dvx_m_s:
         return pulse->channel[CP_CHANNEL_VX][0] - channel_at(pulse, CP_CHANNEL_VX, look->time_s);
     case CP_SUITE_dvy_away_m_s:

@@ -12,6 +12,8 @@
     X(peak_g, "g", "peak", "largest deceleration along x, CFC60")                                  \
     X(cell_force_kn, "kN", "force on the cell", "the same times the mass behind the firewall")     \
     X(crush_mm, "mm", "crush", "integral of v_x while it is positive, at most 300 ms")             \
+    X(struck_mm, "mm", "static crush",                                                             \
+      "how far the struck side or rear has been pushed in for good; of a front: into the cell")    \
     X(dvx_m_s, "m/s", "loss of v_x",                                                               \
       "loss of velocity along the car's x axis at an instant; the axes turn with "                 \
       "the car, as those of an accelerometer")                                                     \

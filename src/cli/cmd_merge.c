@@ -6,6 +6,7 @@
 #include "store/query.h"
 
 #include <string.h>
+#include <unistd.h>
 
 typedef struct arguments {
     const char *out_path;
@@ -43,7 +44,7 @@ static const struct argp ARGP = {
     .parser = parse,
     .args_doc = "OUT.db IN.db...",
     .doc = "Put databases of one study together: what shards or several machines have done. OUT is "
-           "created when it is not there."
+           "created when it is not there, and only if all of them fit."
            "\v"
            "Databases of different studies, or of different states of one, are refused. Merging "
            "the same again changes nothing. Tables attempt and merge_source tell where every "
@@ -72,7 +73,9 @@ cp_status cmd_merge(int argc, char **argv, cp_error *error)
     cp_args_parse(&ARGP, argc, argv, &a);
 
     cp_store *store = NULL;
+    bool is_new = access(a.out_path, F_OK) != 0;
     cp_status status = cp_store_open(a.out_path, CP_STORE_CREATE, &store, error);
+    bool is_open = status == CP_OK;
     for (int k = 0; status == CP_OK && k < a.in_count; k++) {
         cp_merge_count count;
         status = cp_merge(store, a.in_paths[k], &count, error);
@@ -82,6 +85,10 @@ cp_status cmd_merge(int argc, char **argv, cp_error *error)
     }
     if (status == CP_OK)
         status = report(store, a.out_path, error);
+    cp_store_finish(store);
     cp_store_close(store);
+    // Half a merge is no result: what was created for it goes.
+    if (status != CP_OK && is_new && is_open && unlink(a.out_path) == 0)
+        cp_error_prefix(error, "%s is not created: ", a.out_path);
     return status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/csv_row.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 char *cp_csv_next_line(char **rest)
@@ -13,15 +14,35 @@ char *cp_csv_next_line(char **rest)
     return line;
 }
 
-size_t cp_csv_split(char *line, char **fields, size_t room)
+char cp_csv_separator(const char *header)
+{
+    return strchr(header, ';') != NULL && strchr(header, ',') == NULL ? ';' : ',';
+}
+
+// A field without the blanks and the pair of quotes around it.
+static char *trim(char *field)
+{
+    field += strspn(field, " \t");
+    size_t length = strlen(field);
+    while (length > 0 && strchr(" \t\r", field[length - 1]) != NULL)
+        field[--length] = '\0';
+    bool quoted = length >= 2 && field[0] == '"' && field[length - 1] == '"' &&
+                  memchr(field + 1, '"', length - 2) == NULL;
+    if (quoted)
+        field[length - 1] = '\0';
+    return quoted ? field + 1 : field;
+}
+
+size_t cp_csv_split(char *line, char separator, char **fields, size_t room)
 {
     size_t count = 0;
     for (char *field = line; field != NULL; count++) {
+        char *next = strchr(field, separator);
+        if (next != NULL)
+            *next++ = '\0';
         if (count < room)
-            fields[count] = field;
-        field = strchr(field, ',');
-        if (field != NULL)
-            *field++ = '\0';
+            fields[count] = trim(field);
+        field = next;
     }
     return count;
 }

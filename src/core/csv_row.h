@@ -6,7 +6,9 @@
 
 #include <stddef.h>
 
-/* Rows of a CSV file of numbers and plain words, cut in place: no quotes. */
+/* Rows of a CSV file of numbers and plain words, cut in place. A pair of quotes around a field is
+ * left out; nothing is quoted within it. Decimal signs are points, whatever separates the fields.
+ */
 
 enum { CP_CSV_FIELDS_MAX = 32 };
 
@@ -14,8 +16,13 @@ enum { CP_CSV_FIELDS_MAX = 32 };
  * Returns the line without its end. */
 char *cp_csv_next_line(char **rest);
 
-/* Cut a line into fields, the first room of them; returns how many there are. */
-size_t cp_csv_split(char *line, char **fields, size_t room);
+/* What separates the fields of a file with this header: ';' where it has one and no comma, as
+ * spreadsheets write it in countries with a decimal comma, else ','. */
+char cp_csv_separator(const char *header);
+
+/* Cut a line into fields, the first room of them, without the blanks around them; returns how many
+ * there are. */
+size_t cp_csv_split(char *line, char separator, char **fields, size_t room);
 
 /* Whether a row has as many fields as the file has columns, which are at most CP_CSV_FIELDS_MAX:
  * one more or less shifts numbers into other columns. Error: CP_BAD_INPUT with file and line. */

@@ -31,14 +31,16 @@ static bool is_blank(const char *line)
 static cp_status take_line(cp_csv_table *table, char *line, size_t number, cp_error *error)
 {
     if (table->column_count == 0) {
-        table->column_count = cp_csv_split(line, table->column, CP_CSV_FIELDS_MAX);
+        table->separator = cp_csv_separator(line);
+        table->column_count =
+            cp_csv_split(line, table->separator, table->column, CP_CSV_FIELDS_MAX);
         if (table->column_count > CP_CSV_FIELDS_MAX)
             return cp_fail(error, CP_BAD_INPUT, "%s:%zu: must have at most %d columns, found %zu",
                            table->path, number, CP_CSV_FIELDS_MAX, table->column_count);
         return CP_OK;
     }
     char *fields[CP_CSV_FIELDS_MAX];
-    size_t count = cp_csv_split(line, fields, CP_CSV_FIELDS_MAX);
+    size_t count = cp_csv_split(line, table->separator, fields, CP_CSV_FIELDS_MAX);
     if (count != table->column_count)
         return cp_fail(error, CP_BAD_INPUT, "%s:%zu: %zu fields, but the header has %zu",
                        table->path, number, count, table->column_count);
@@ -52,7 +54,7 @@ cp_status cp_csv_table_load(const char *path, cp_csv_table *table, cp_error *err
     char *content = NULL;
     size_t size = 0;
     *table = (cp_csv_table){0};
-    cp_status status = cp_file_read(path, &content, &size, error);
+    cp_status status = cp_file_read_text(path, &content, &size, error);
     return status == CP_OK ? cp_csv_table_parse(path, content, table, error) : status;
 }
 
@@ -63,7 +65,9 @@ cp_status cp_csv_table_parse(const char *path, char *content, cp_csv_table *tabl
     if (table->path == NULL)
         return cp_fail_memory(error, path);
     cp_status status = make_room(table, error);
-    for (char *rest = table->content; status == CP_OK && rest != NULL && *rest != '\0';) {
+    bool marked = strncmp(table->content, "\xef\xbb\xbf", 3) == 0; // byte order mark
+    for (char *rest = table->content + (marked ? 3 : 0);
+         status == CP_OK && rest != NULL && *rest != '\0';) {
         char *line = cp_csv_next_line(&rest);
         number++;
         if (!is_blank(line))

@@ -8,13 +8,15 @@
 #include <stddef.h>
 
 /* A CSV file with a header and named columns, as the reference tables of a suite are. Lines that
- * begin with '#' are comments, empty ones do not count. No quotes. */
+ * begin with '#' are comments, empty ones do not count. Comma or semicolon, quotes and byte order
+ * mark as in csv_row.h. */
 typedef struct cp_csv_table {
     char *path;
     char *content; /* the fields point into it */
     size_t *line;  /* of each row in the file, from 1 */
     char **field;  /* row by row, column_count each */
     char **column; /* names */
+    char separator;
     size_t column_count;
     size_t row_count;
 } cp_csv_table;

@@ -140,8 +140,7 @@ cp_status cp_file_check_target(const char *path, cp_error *error)
                    kind_of(entry.st_mode));
 }
 
-// A new file beside path that nobody can have put there; its name goes to temporary.
-static int create_neighbour(const char *path, char temporary[4096], cp_error *error)
+int cp_file_create_neighbour(const char *path, char temporary[4096], cp_error *error)
 {
     uint64_t number = 0;
     if (getrandom(&number, sizeof number, 0) != (ssize_t)sizeof number ||
@@ -174,7 +173,7 @@ cp_status cp_file_write(const char *path, const void *content, size_t size, cp_e
     cp_status status = cp_file_check_target(path, error);
     if (status != CP_OK)
         return status;
-    int file = create_neighbour(path, temporary, &own);
+    int file = cp_file_create_neighbour(path, temporary, &own);
     if (file < 0)
         return cp_fail(error, own.status, "%s", own.text);
     bool good = write_all(file, content, size);

@@ -37,6 +37,11 @@ CP_MUST_CHECK cp_status cp_file_check_text(const char *name, const char *content
 CP_MUST_CHECK cp_status cp_file_write(const char *path, const void *content, size_t size,
                                       cp_error *error);
 
+/* A new, empty file beside path that nobody can have put there, for writing; its random name goes
+ * to temporary. Returns its descriptor, or -1 with an error: CP_IO_FAILED, CP_BAD_INPUT for a path
+ * that is too long. */
+int cp_file_create_neighbour(const char *path, char temporary[4096], cp_error *error);
+
 /* Whether cp_file_write may put a file there: nothing is, or a regular file. CP_BAD_INPUT for a
  * folder, a symbolic link, a device, a pipe. */
 CP_MUST_CHECK cp_status cp_file_check_target(const char *path, cp_error *error);

@@ -3,6 +3,7 @@
 
 #include "core/file.h"
 #include "core/yaml_lines.h"
+#include "core/yaml_structure.h"
 
 #include <errno.h>
 #include <math.h>
@@ -108,7 +109,9 @@ cp_status cp_yaml_parse(const char *name, const char *content, size_t size,
     if (status == CP_OK)
         status = cp_file_check_text(name, content, size, error);
     if (status == CP_OK)
-        status = cp_yaml_lines_read(file, content, size, error);
+        status = cp_yaml_lines_read(name, content, size, &file->lines, &file->line_count, error);
+    if (status == CP_OK)
+        status = cp_yaml_structure_check(file, error);
     if (status == CP_OK)
         status = load_structure(file, content, size, error);
     if (status != CP_OK)
@@ -134,11 +137,7 @@ void cp_yaml_close(cp_yaml_file *file)
     cyaml_config_t config = {.mem_fn = cyaml_mem, .log_level = CYAML_LOG_ERROR};
     if (file->data != NULL)
         cyaml_free(&config, file->schema, file->data, 0);
-    for (size_t k = 0; k < file->line_count; k++) {
-        free(file->lines[k].path);
-        free(file->lines[k].scalar);
-    }
-    free(file->lines);
+    cp_yaml_lines_destroy(file->lines, file->line_count);
     free(file->path);
     *file = (cp_yaml_file){0};
 }

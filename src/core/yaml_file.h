@@ -2,11 +2,10 @@
 #ifndef CORE_YAML_FILE_H
 #define CORE_YAML_FILE_H
 
-#include "core/error.h"
+#include "core/yaml_lines.h"
 
 #include <cyaml/cyaml.h>
 #include <stdbool.h>
-#include <stddef.h>
 
 /* Loading a YAML file with libcyaml, with every message naming file and line.
  *
@@ -14,13 +13,6 @@
  * strings in its schemas and converted here (whole text, finite, in range), because libcyaml
  * itself takes nan and 1.5garbage. A second pass with libyaml remembers the line of every key
  * path, so that range messages can name it. */
-
-/* Line of one value: path as in "variants[1].functions[0].parameters.ttc_s". */
-typedef struct cp_yaml_line {
-    char *path;
-    char *scalar; /* text of a scalar value, NULL for a mapping or a sequence */
-    size_t line;
-} cp_yaml_line;
 
 /* A loaded file; zero-initialise, load, close. */
 typedef struct cp_yaml_file {

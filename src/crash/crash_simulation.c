@@ -6,6 +6,7 @@
 #include "crash/barrier.h"
 #include "crash/encounter.h"
 #include "crash/film_camera.h"
+#include "crash/struck_structure.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -15,6 +16,16 @@ cp_crash_options cp_crash_options_default(void)
 {
     return (cp_crash_options){
         .time_step_s = 0.0005, .duration_s = 0.2, .longest_duration_s = 0.4, .coast_after_s = 0.01};
+}
+
+const char *cp_struck_zone_text(cp_struck_zone zone)
+{
+    static const char *const TEXT[] = {
+#define CP_STRUCK_ZONE_TEXT(name, text) text,
+        CP_STRUCK_ZONES(CP_STRUCK_ZONE_TEXT)
+#undef CP_STRUCK_ZONE_TEXT
+    };
+    return TEXT[zone];
 }
 
 // ---- ODE as a library ------------------------------------------------------------------------
@@ -70,6 +81,11 @@ void cp_crash_library_end(void)
     dCloseODE();
 }
 
+bool cp_crash_library_is_double(void)
+{
+    return dCheckConfiguration("ODE_double_precision") != 0;
+}
+
 cp_status cp_crash_thread_begin(cp_error *error)
 {
     if (!dAllocateODEDataForThread(dAllocateMaskAll))
@@ -95,6 +111,7 @@ typedef struct crash_run {
     int car_count;
     cp_vec2 common_m_s; /* velocity of the plane */
     cp_encounter encounter;
+    cp_contact_side side[2]; /* where each is struck */
     cp_pose start[2];
     cp_vec2 start_m_s[2];       /* of whole cars, seen from the plane */
     cp_body_state last[2];      /* centre of gravity at the end of the last step */
@@ -173,7 +190,7 @@ static bool find_first_touch(crash_run *run, cp_vec2 approach, double *travel_m)
 
 static void translate_car(cp_car *car, cp_vec2 shift_m)
 {
-    for (int k = 0; k < CP_BODY_COUNT; k++) {
+    for (int k = 0; k < car->body_count; k++) {
         const dReal *p = dBodyGetPosition(car->body[k]);
         dBodySetPosition(car->body[k], p[0] + shift_m.x, p[1] + shift_m.y, 0.0);
     }
@@ -196,9 +213,11 @@ static cp_status set_up(crash_run *run, const cp_vehicle_model *models[2],
     for (int k = 0; k < run->car_count; k++) {
         cp_body_state state = states[k];
         state.velocity_m_s = cp_vec2_sub(state.velocity_m_s, run->common_m_s);
-        cp_status status = cp_car_build(&run->car[k], models[k], run->world, &state, error);
+        cp_status status = cp_car_build(&run->car[k], models[k], configuration->side[k], run->world,
+                                        &state, error);
         if (status != CP_OK)
             return status;
+        run->side[k] = configuration->side[k];
         run->encounter.car[k] = &run->car[k];
         approach = cp_vec2_add(approach, cp_vec2_scale(state.velocity_m_s, k == 0 ? 1.0 : -1.0));
     }
@@ -392,8 +411,8 @@ static void sum_energy(crash_run *run)
         energy->kinetic_j += cp_car_kinetic_energy(&run->car[c]);
         energy->elastic_j += cp_car_elastic_energy(&run->car[c]);
         energy->plastic_j += absorbed.longitudinal_j + absorbed.crash_box_j + absorbed.bending_j +
-                             absorbed.engine_j + absorbed.corner_j + absorbed.upper_j -
-                             run->car[c].mount_damping_j;
+                             absorbed.engine_j + absorbed.corner_j + absorbed.upper_j +
+                             absorbed.struck_j - run->car[c].mount_damping_j;
         energy->rate_j += absorbed.rate_j;
         energy->mount_damping_j += run->car[c].mount_damping_j;
         blocks_j += cp_car_block_energy(&run->car[c]);
@@ -540,7 +559,7 @@ static cp_status simulate_contact(crash_run *run, cp_error *error)
 static double sum_of_parts(const cp_car_absorbed *part)
 {
     return part->longitudinal_j + part->crash_box_j + part->bending_j + part->engine_j +
-           part->corner_j + part->upper_j + part->rate_j;
+           part->corner_j + part->upper_j + part->struck_j + part->rate_j;
 }
 
 // What has become of each car as a whole.
@@ -585,6 +604,7 @@ static cp_status evaluate(crash_run *run, cp_error *error)
             return status;
         take_whole_delta_v(&result->whole[c], &result->severity[c]);
         result->crush_m[c] = run->car[c].crush_m;
+        result->struck[c] = cp_struck_of(&run->car[c], run->side[c]);
     }
     return CP_OK;
 }

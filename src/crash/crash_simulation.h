@@ -16,8 +16,31 @@ typedef struct cp_car_absorbed {
     double engine_j;       /* cradle, firewall behind it, mounts with their dampers */
     double corner_j;       /* outboard corners with the cell's edge behind them */
     double upper_j;        /* upper load path likewise */
+    double struck_j;       /* sides and rear of a car struck there; the face of a barrier */
     double rate_j;         /* what strain rate adds to all of them */
 } cp_car_absorbed;
+
+/* Where a car was struck. X(name, text) */
+#define CP_STRUCK_ZONES(X)                                                                         \
+    X(CP_STRUCK_FRONT, "front")                                                                    \
+    X(CP_STRUCK_FRONT_WHEEL, "front_wheel")                                                        \
+    X(CP_STRUCK_DOOR, "door")                                                                      \
+    X(CP_STRUCK_REAR_WHEEL, "rear_wheel")                                                          \
+    X(CP_STRUCK_REAR, "rear")
+typedef enum cp_struck_zone {
+#define CP_STRUCK_ZONE_NAME(name, text) name,
+    CP_STRUCK_ZONES(CP_STRUCK_ZONE_NAME)
+#undef CP_STRUCK_ZONE_NAME
+} cp_struck_zone;
+/* "front", "front_wheel", "door", "rear_wheel", "rear". */
+const char *cp_struck_zone_text(cp_struck_zone zone);
+
+/* How far a car was pushed in where it was struck, for good: a side or the rear from its outline,
+ * a front into the passenger cell. */
+typedef struct cp_struck {
+    double depth_m;
+    cp_struck_zone zone; /* of a side the one that took most energy */
+} cp_struck;
 
 typedef struct cp_crash_options {
     double time_step_s;        /* default 0.0005 */
@@ -73,6 +96,7 @@ typedef struct cp_crash_result {
                               * the axes of their first poses */
     cp_crash_whole whole[2];
     double crush_m[2];   /* largest shortening of the longer-pushed side, bumper to firewall */
+    cp_struck struck[2]; /* where it was struck */
     double separation_s; /* last contact force */
     double t_common_s;   /* two cars: first zero of relative velocity along its first direction */
     double shift_m;      /* moved along the relative velocity until the outlines just touched */
@@ -97,6 +121,8 @@ void cp_crash_result_destroy(cp_crash_result *result);
  * no memory the process ends with a message and exit code 1: it writes through what it is given. */
 CP_MUST_CHECK cp_status cp_crash_library_begin(cp_error *error);
 void cp_crash_library_end(void);
+/* Whether the ODE that was loaded computes in double precision, as it must. */
+bool cp_crash_library_is_double(void);
 /* In every further thread that simulates. */
 CP_MUST_CHECK cp_status cp_crash_thread_begin(cp_error *error);
 void cp_crash_thread_end(void);

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/configurations_csv.h"
 
+#include "core/array.h"
+#include "core/csv_row.h"
 #include "core/file.h"
 #include "core/units.h"
 
-#include <ctype.h>
 #include <search.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -54,6 +55,7 @@ typedef struct reading {
     size_t line;
     cp_configuration_list *list;
     size_t place[COLUMN_COUNT]; /* of a column in the file; ABSENT */
+    char separator;
     size_t field_count;
     char *field[COLUMN_COUNT];
     void *ids; /* of the rows, a binary tree */
@@ -62,27 +64,6 @@ typedef struct reading {
 static int compare_texts(const void *one, const void *other)
 {
     return strcmp(one, other);
-}
-
-// Cut a line at its commas, blanks around fields left out; the number of fields, also of those that
-// find no room.
-static size_t split(char *line, char *field[COLUMN_COUNT])
-{
-    size_t count = 0;
-    for (char *at = line; at != NULL;) {
-        char *comma = strchr(at, ',');
-        if (comma != NULL)
-            *comma = '\0';
-        while (isspace((unsigned char)*at))
-            at++;
-        for (char *end = at + strlen(at); end > at && isspace((unsigned char)end[-1]);)
-            *--end = '\0';
-        if (count < COLUMN_COUNT)
-            field[count] = at;
-        count++;
-        at = comma != NULL ? comma + 1 : NULL;
-    }
-    return count;
 }
 
 // ---- the first line ------------------------------------------------------------------------
@@ -118,7 +99,8 @@ static cp_status take_header(reading *self, char *line, cp_error *error)
 {
     for (size_t k = 0; k < COLUMN_COUNT; k++)
         self->place[k] = ABSENT;
-    self->field_count = split(line, self->field);
+    self->separator = cp_csv_separator(line);
+    self->field_count = cp_csv_split(line, self->separator, self->field, COLUMN_COUNT);
     for (size_t f = 0; f < self->field_count && f < COLUMN_COUNT; f++) {
         size_t k = 0;
         while (k < COLUMN_COUNT && strcmp(COLUMN[k].name, self->field[f]) != 0)
@@ -232,66 +214,89 @@ static cp_status take_row(reading *self, char *line, cp_error *error)
 {
     cp_configuration_list *list = self->list;
     cp_listed_configuration row = {.line = self->line};
-    size_t found = split(line, self->field);
+    size_t found = cp_csv_split(line, self->separator, self->field, COLUMN_COUNT);
     if (found != self->field_count)
         return cp_fail(error, CP_BAD_INPUT, "%s:%zu: must have %zu fields, found %zu", self->path,
                        self->line, self->field_count, found);
     cp_status status = fill_texts(self, &row, error);
     if (status == CP_OK)
         status = fill_numbers(self, &row, error);
-    if (status == CP_OK && (list->count & (list->count - 1)) == 0) {
-        size_t room = list->count == 0 ? 1 : 2 * list->count;
-        cp_listed_configuration *larger = realloc(list->row, room * sizeof *larger);
-        if (larger == NULL)
-            status = cp_fail_memory(error, "configurations");
-        else
-            list->row = larger;
-    }
-    if (status == CP_OK && tsearch(row.id, &self->ids, compare_texts) == NULL)
+    cp_listed_configuration *added = status == CP_OK ? cp_array_add(list->row, list->count) : NULL;
+    if (status == CP_OK && (added == NULL || tsearch(row.id, &self->ids, compare_texts) == NULL))
         status = cp_fail_memory(error, "configurations");
     if (status == CP_OK)
-        list->row[list->count++] = row;
+        *added = row;
     else
         destroy_row(&row);
     return status;
 }
 
-cp_status cp_configurations_csv_read(const char *path, cp_configuration_list *list, cp_error *error)
+// A row that cannot be taken: why stands in the list.
+static cp_status leave_out(cp_configuration_list *list, const cp_error *why, cp_error *error)
+{
+    char **added = cp_array_add(list->bad, list->bad_count);
+    if (added == NULL)
+        return cp_fail_memory(error, "configurations");
+    *added = strdup(why->text);
+    if (*added == NULL)
+        return cp_fail_memory(error, "configurations");
+    return CP_OK;
+}
+
+static cp_status take_lines(reading *self, char *content, bool strict, cp_error *error)
+{
+    bool has_header = false;
+    cp_status status = CP_OK;
+    for (char *rest = content; status == CP_OK && rest != NULL;) {
+        char *line = cp_csv_next_line(&rest);
+        self->line++;
+        if (line[strspn(line, " \t\r")] == '\0' || line[0] == '#')
+            continue;
+        cp_error why = {0};
+        status = has_header ? take_row(self, line, &why) : take_header(self, line, &why);
+        if (status == CP_BAD_INPUT && has_header && !strict)
+            status = leave_out(self->list, &why, error);
+        else if (status != CP_OK)
+            *error = why;
+        has_header = true;
+    }
+    return status;
+}
+
+cp_status cp_configurations_csv_read(const char *path, bool strict, cp_configuration_list *list,
+                                     cp_error *error)
 {
     char *content = NULL;
     size_t size = 0;
-    bool has_header = false;
+    cp_error own = {0};
     *list = (cp_configuration_list){0};
     reading self = {.path = path, .list = list};
-    cp_status status = cp_file_read_text(path, &content, &size, error);
-    for (char *line = content; status == CP_OK && line != NULL;) {
-        char *end = strchr(line, '\n');
-        if (end != NULL)
-            *end = '\0';
-        self.line++;
-        if (line[strspn(line, " \t\r")] != '\0' && line[0] != '#') {
-            status = has_header ? take_row(&self, line, error) : take_header(&self, line, error);
-            has_header = true;
-        }
-        line = end != NULL ? end + 1 : NULL;
-    }
+    cp_status status = cp_file_read_text(path, &content, &size, &own);
+    if (status == CP_OK)
+        status = take_lines(&self, content, strict, &own);
     while (self.ids != NULL)
         tdelete(*(char **)self.ids, &self.ids, compare_texts);
     free(content);
-    if (status == CP_OK && list->count == 0)
-        status = cp_fail(error, CP_BAD_INPUT,
+    if (status == CP_OK && list->count == 0 && list->bad_count > 0)
+        status = cp_fail(&own, CP_BAD_INPUT, "%s", list->bad[0]);
+    else if (status == CP_OK && list->count == 0)
+        status = cp_fail(&own, CP_BAD_INPUT,
                          "%s: must hold a line of column names and at least "
                          "one configuration, found none",
                          path);
-    if (status != CP_OK)
-        cp_configuration_list_destroy(list);
-    return status;
+    if (status == CP_OK)
+        return CP_OK;
+    cp_configuration_list_destroy(list);
+    return cp_fail(error, status, "%s", own.text);
 }
 
 void cp_configuration_list_destroy(cp_configuration_list *list)
 {
     for (size_t k = 0; k < list->count; k++)
         destroy_row(&list->row[k]);
+    for (size_t k = 0; k < list->bad_count; k++)
+        free(list->bad[k]);
     free(list->row);
+    free(list->bad);
     *list = (cp_configuration_list){0};
 }

@@ -9,8 +9,9 @@
 #include <stddef.h>
 
 /* Lists of crash configurations, one a row: cases of an accident database, of another simulator, of
- * a test plan. A first line names the columns, in any order; comma between fields, no quotes; empty
- * lines and lines that begin with # are passed over.
+ * a test plan. A first line names the columns, in any order; fields as in core/csv_row.h (comma or
+ * semicolon, a byte order mark and carriage returns may be there); empty lines and lines that begin
+ * with # are passed over.
  *
  *   either  speed_a_km_h speed_b_km_h offset_mm angle_deg      as of 'crashpulse crash': b's front
  *                                                              edge in a's frame, 0 oncoming
@@ -36,13 +37,16 @@ typedef struct cp_configuration_list {
     cp_listed_configuration *row;
     size_t count;
     bool has_poses; /* the second kind */
+    char **bad;     /* of each row that was left out, why: file, line and column */
+    size_t bad_count;
 } cp_configuration_list;
 
-/* The caller destroys. Errors: CP_BAD_INPUT with file, line and column: a column that is unknown,
- * given twice or missing, a number that is none or out of range, an id given twice; CP_NO_MEMORY.
- * After an error the list is destroyed already. */
-CP_MUST_CHECK cp_status cp_configurations_csv_read(const char *path, cp_configuration_list *list,
-                                                   cp_error *error);
+/* The caller destroys. A row whose number of fields is another, with a number that is none or out
+ * of range, or with an id that is there already is left out, unless strict. Errors: CP_BAD_INPUT
+ * with file, line and column: a column that is unknown, given twice or missing; such a row, where
+ * strict or no row is right; CP_NO_MEMORY. After an error the list is destroyed already. */
+CP_MUST_CHECK cp_status cp_configurations_csv_read(const char *path, bool strict,
+                                                   cp_configuration_list *list, cp_error *error);
 void cp_configuration_list_destroy(cp_configuration_list *list);
 
 #endif

@@ -129,10 +129,12 @@ static cp_status read_instrument(const record *row, cp_ev5_test *test, cp_error 
         char *text;
         size_t room;
     } TEXTS[] = {{3, "sensor", own->sensor, sizeof own->sensor},
+                 {4, "position", own->position, sizeof own->position},
                  {5, "attachment", own->attachment, sizeof own->attachment},
                  {6, "axis", own->axis, sizeof own->axis},
                  {8, "unit", own->unit, sizeof own->unit},
                  {18, "data status", own->status, sizeof own->status},
+                 {19, "channel status", own->rank, sizeof own->rank},
                  {20, "comment", own->comment, sizeof own->comment}};
     cp_status status = number_field(row, 1, "vehicle number", 0.0, 9.0, &vehicle, error);
     if (status == CP_OK)

@@ -27,6 +27,7 @@ typedef struct cp_ev5_instrument {
     int vehicle; /* number; 0: the barrier */
     int curve;   /* number of the curve, its "channel": file <test>.<curve, three digits> */
     char sensor[8];
+    char position[8]; /* seat of the occupant it belongs to; "NA" or empty: the car's own */
     char attachment[16];
     char axis[8];
     char unit[8]; /* of the values: "G'S", "NWT", "NWM", "MM", "KPH", "DPS" */
@@ -34,6 +35,7 @@ typedef struct cp_ev5_instrument {
     long last_sample;
     double interval_s;
     char status[8]; /* "AM" as measured, "CF" channel failed, "NO" no data */
+    char rank[4];   /* "P" primary, "R" redundant */
     char comment[96];
 } cp_ev5_instrument;
 

@@ -126,6 +126,15 @@ cp_olc cp_olc_from_velocity(const double *vx_m_s, size_t count, double interval_
     return olc;
 }
 
+bool cp_olc_is_decided(const cp_olc *olc, double end_s, double separation_s)
+{
+    // Rounding of times in files.
+    const double tolerance_s = 1e-6;
+    bool reached = olc->status == CP_OLC_VALUE && olc->t2_s <= end_s + tolerance_s;
+    return reached || end_s >= CP_OLC_HORIZON_S - tolerance_s ||
+           separation_s <= end_s + tolerance_s;
+}
+
 double cp_olc_sd(const cp_olc *olc, size_t count)
 {
     if (count < 2)

@@ -2,6 +2,7 @@
 #ifndef PULSE_OLC_H
 #define PULSE_OLC_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Occupant load criterion (Kuebler, Gargallo, Elsaesser, ATZ 6/2009; Euro NCAP TB 027): a virtual
@@ -42,6 +43,11 @@ const char *cp_olc_status_text(cp_olc_status status);
  * interval_s from first contact, linear between samples, continued past its end at constant
  * velocity to at most 0.5 s. */
 cp_olc cp_olc_from_velocity(const double *vx_m_s, size_t count, double interval_s);
+
+/* Whether a record that ends at end_s decides the OLC found from it: it reaches t2, the horizon, or
+ * beyond the last contact at separation_s (NAN: not known), after which the car coasts. Else the
+ * continuation at constant velocity is a guess, and so is the OLC. */
+bool cp_olc_is_decided(const cp_olc *olc, double end_s, double separation_s);
 
 /* Standard deviation of several OLC of one crash, g; a left-censored one counts as 0 g. NAN for
  * fewer than two, or where one has failed. */

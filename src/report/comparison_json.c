@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/comparison_json.h"
-#include "report/field_comparison.h"
 
-#include "report/query_json.h"
+#include "analysis/query_json.h"
+#include "report/field_json.h"
+#include "report/figure_json.h"
 
 #include <math.h>
 
@@ -14,12 +15,6 @@ static json_t *estimate_json(cp_estimate estimate)
         return json_null();
     return json_pack("{s:s, s:o}", "relation", RELATION[estimate.relation], "value",
                      cp_number_json(estimate.value));
-}
-
-json_t *cp_interval_json(cp_interval interval)
-{
-    return json_pack("{s:s, s:o, s:o}", "status", cp_interval_status_text(interval.status), "low",
-                     cp_number_json(interval.low), "high", cp_number_json(interval.high));
 }
 
 static json_t *description_json(const cp_description *d)

@@ -2,6 +2,7 @@
 #include "run/runner.h"
 
 #include "core/log.h"
+#include "core/memory_stream.h"
 #include "core/progress.h"
 #include "run/child.h"
 #include "run/confinement.h"
@@ -14,6 +15,7 @@
 #include "study/controls_text.h"
 #include "study/occasions.h"
 #include "study/scenario_outputs.h"
+#include "study/study_file.h"
 #include "study/type_mapping.h"
 
 #include <errno.h>
@@ -553,10 +555,26 @@ static cp_status run_jobs(runner *run, cp_error *error)
 
 // ---- public --------------------------------------------------------------------------------
 
+// What drivers and functions the study has, a message a line.
+static void tell_controls(const cp_study *study)
+{
+    char *text = NULL, *rest = NULL;
+    size_t size = 0;
+    FILE *out = cp_memory_stream(&text, &size);
+    if (out == NULL)
+        return;
+    cp_controls_text_study(study, "", out);
+    if (fclose(out) == 0)
+        for (char *line = strtok_r(text, "\n", &rest); line != NULL;
+             line = strtok_r(NULL, "\n", &rest))
+            cp_log_info("%s", line);
+    free(text);
+}
+
 // What is really run, and what is not as the files have it.
 static cp_status tell_inputs(const cp_study *study, cp_error *error)
 {
-    cp_controls_text_study(study, "crashpulse: ", stderr);
+    tell_controls(study);
     cp_status status = cp_study_tell_occasions(study, error);
     return status == CP_OK ? cp_study_tell_options(study, error) : status;
 }
@@ -616,6 +634,7 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
     free(run.jobs);
     free(run.waiting);
     free(run.background_missing);
+    cp_store_finish(run.store);
     cp_store_close(run.store);
     cp_plan_destroy(&run.plan);
     cp_fleet_destroy(&run.fleet);

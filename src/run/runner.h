@@ -13,7 +13,7 @@ typedef struct cp_runner_options {
     const char *study_path;
     const char *db_path;
     size_t jobs;             /* worker processes at a time, >= 1 */
-    const char *worker_path; /* NULL: crashpulse-worker beside the running executable */
+    const char *worker_path; /* NULL: that of the running executable */
     double time_limit_s; /* a replication that takes longer has failed; 0: ten times the simulated
                             duration, at least 600 s */
     size_t shard;        /* 1 ... shards: which share of the replications to run; */

@@ -4,9 +4,10 @@
 
 #include "core/error.h"
 
-/* The database of a study: opening, creating, migrating, transactions. SQLite in WAL mode with
- * foreign keys on; a connection waits up to 60 s for others before it says CP_BUSY. One connection
- * belongs to one thread and must not cross a fork. Only this folder sees SQLite. */
+/* The database of a study: opening, creating, migrating, transactions. SQLite in WAL mode
+ * while it is written, without a log when the last writer has left, with foreign keys on; a
+ * connection waits up to 60 s for others before it says CP_BUSY. One connection belongs to one
+ * thread and must not cross a fork. Only this folder sees SQLite. */
 typedef struct cp_store cp_store;
 
 typedef enum cp_store_mode {
@@ -23,7 +24,12 @@ extern const int CP_STORE_VERSION;
  * failed creation no file is left that was not there before. */
 CP_MUST_CHECK cp_status cp_store_open(const char *path, cp_store_mode mode, cp_store **store,
                                       cp_error *error);
-/* NULL is fine. An open transaction is rolled back. */
+/* Take SQLite's log into the database and leave it without one, so that it can be read without the
+ * right to write and copied as one file; waits up to 2 s for readers to leave, then says that the
+ * log stays. For the last to write; NULL is fine. */
+void cp_store_finish(cp_store *store);
+/* NULL is fine. An open transaction is rolled back. The last writing connection to leave finishes
+ * the database, without waiting for anybody. */
 void cp_store_close(cp_store *store);
 
 /* Read the whole file for damage (SQLite's quick_check: every page, the structure of tables; not

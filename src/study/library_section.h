@@ -3,7 +3,7 @@
 #define STUDY_LIBRARY_SECTION_H
 
 #include "core/yaml_file.h"
-#include "study/study_file.h"
+#include "study/study.h"
 
 /* The keys of `function: plugin` that name files: library (needed), as (its name in tables;
  * default: what the file is called, without lib and .so), data. Values as written, NULL when not

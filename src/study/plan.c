@@ -96,12 +96,28 @@ static char *words_text(char *const *words, size_t count)
     return take_text(list);
 }
 
+static json_t *market_json(const cp_study *study)
+{
+    json_t *market = json_array();
+    for (size_t k = 0; k < study->market_count; k++)
+        json_array_append_new(market, json_pack("{s:s, s:s, s:f}", "type", study->market[k].type,
+                                                "class", study->market[k].vehicle_class, "share_1",
+                                                study->market[k].share_1));
+    return market;
+}
+
 static char *vehicles_text(const cp_study *study, const cp_vehicle_model_row *models)
 {
     json_t *types = json_object();
     for (size_t k = 1; k < study->vehicle_count; k++)
         json_object_set_new(types, study->vehicles[k].type, json_string(models[k].name));
-    return take_text(json_pack("{s:s?, s:o}", "default", models[0].name, "types", types));
+    json_t *vehicles = json_pack("{s:s?, s:o}", "default", models[0].name, "types", types);
+    // Only where there is one: what was run without stays done.
+    if (study->has_fleet) {
+        json_object_set_new(vehicles, "fleet", json_string("default"));
+        json_object_set_new(vehicles, "market", market_json(study));
+    }
+    return take_text(vehicles);
 }
 
 // ---- rows ----------------------------------------------------------------------------------

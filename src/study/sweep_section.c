@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep_section.h"
 
+#include "core/array.h"
 #include "study/study_parts.h"
 
 #include <math.h>
@@ -412,17 +413,13 @@ static cp_status rename_point(const sweep *s, size_t which, double value, point 
 static cp_status note_value(const axis *a, double value, point *p, cp_error *error)
 {
     char parameter[KEY_PATH_SIZE];
-    cp_study_swept *swept = realloc(*p->swept, (*p->swept_count + 1) * sizeof *swept);
+    cp_study_swept *swept = cp_array_add(*p->swept, *p->swept_count);
     if (swept == NULL)
         return cp_fail_memory(error, "sweep");
-    *p->swept = swept;
     snprintf(parameter, sizeof parameter, "%s.%s.%s.%s", a->of_scenario ? "scenarios" : "variants",
              p->base, group_name(a), short_name(a));
-    swept[*p->swept_count] = (cp_study_swept){strdup(parameter), value};
-    if (swept[*p->swept_count].parameter == NULL)
-        return cp_fail_memory(error, "sweep");
-    ++*p->swept_count;
-    return CP_OK;
+    *swept = (cp_study_swept){strdup(parameter), value};
+    return swept->parameter != NULL ? CP_OK : cp_fail_memory(error, "sweep");
 }
 
 // Put "--option value" in place of what the scenario says of the option, or behind all options.

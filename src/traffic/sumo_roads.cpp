@@ -144,8 +144,6 @@ void read_lane(const cp_sumo_numbers *numbers, const std::string &id, Lanes *all
 
 } // namespace
 
-extern "C" {
-
 cp_status cp_sumo_roads_read(const cp_sumo_numbers *numbers, cp_road_network **roads,
                              cp_lane_map **lanes, cp_error *error)
 {
@@ -171,5 +169,3 @@ bool cp_sumo_lanes_pass_over(const char *one, const char *other)
 {
     return pass_over(one, other);
 }
-
-} // extern "C"

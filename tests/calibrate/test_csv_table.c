@@ -42,6 +42,27 @@ static void comments_and_blank_lines_do_not_count(void **state)
     cp_csv_table_destroy(&table);
 }
 
+static void forms_of_spreadsheets_are_read(void **state)
+{
+    (void)state;
+    static const char *const FORM[] = {"\xef\xbb\xbfname,mass_kg\r\nvan,2000.5\r\n",
+                                       "name;mass_kg\nvan;2000.5\n",
+                                       "\"name\",\"mass_kg\"\n\"van\",2000.5\n"};
+    for (size_t k = 0; k < sizeof FORM / sizeof *FORM; k++) {
+        cp_csv_table table;
+        cp_error error = {0};
+        const char *name = NULL;
+        double mass_kg = 0.0;
+        assert_int_equal(load(FORM[k], &table, &error), CP_OK);
+        assert_int_equal(cp_csv_table_text(&table, 0, "name", &name, &error), CP_OK);
+        assert_string_equal(name, "van");
+        assert_int_equal(
+            cp_csv_table_number(&table, 0, "mass_kg", 0, 5000, false, &mass_kg, &error), CP_OK);
+        assert_near(mass_kg, 2000.5, 0.0);
+        cp_csv_table_destroy(&table);
+    }
+}
+
 static void errors_name_line_and_column(void **state)
 {
     (void)state;
@@ -80,6 +101,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(comments_and_blank_lines_do_not_count),
+        cmocka_unit_test(forms_of_spreadsheets_are_read),
         cmocka_unit_test(errors_name_line_and_column),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,7 +18,7 @@ static cp_status load_fit(const char *lines, cp_fit *fit, cp_error *error)
     ev5_folder_write(&shop, "base.yaml", "vehicle: base\nparameters: []\n");
     ev5_folder_write(&shop, "table.csv", "speed_kmh,offset_mm,angle_deg,olc_g\n56,0,0,20\n");
     ev5_folder_write(&shop, "pulse.csv",
-                     "time_s,ax_m_s2,vx_m_s\n0,0,15\n0.01,0,14\n0.02,0,-1\n0.03,0,-1\n");
+                     "time_s,ax_m_s2,vx_m_s\n0,0,15\n0.01,-200,14\n0.02,-2800,-1\n0.03,2800,-1\n");
     char text[2048], path[128];
     snprintf(text, sizeof text,
              "fit: made_up\nbase: base.yaml\noutput: out.yaml\nseed: 1\n"

@@ -119,16 +119,16 @@ static void a_file_is_read_by_its_columns(void **state)
     const char *text = "vehicle,time_s,ax_m_s2,ay_m_s2,vx_m_s,vy_m_s\n"
                        "a,0,0,0,10,0\r\n"
                        "b,0,1,1,20,1\n"
-                       "a,0.01,-9.80665,4.903325,5,0.5\n"
-                       "a,0.02,0,0,-5,0.25\n\n";
+                       "a,0.01,-980.665,98.0665,5,0.5\n"
+                       "a,0.02,-980.665,-147.1,-5,0.25\n\n";
     if (load_text(text, source_of(""), &pulse, &error) != CP_OK)
         fail_msg("%s", error.text);
     assert_int_equal(pulse.count, 3);
     assert_true(pulse.lateral);
     assert_near(pulse.interval_s, 0.01, 1e-15);
     assert_near(pulse.until_s, 0.02, 1e-15);
-    assert_near(pulse.ax_g[1], -1.0, 1e-12);
-    assert_near(pulse.ay_g[1], 0.5, 1e-12);
+    assert_near(pulse.ax_g[1], -100.0, 1e-10);
+    assert_near(pulse.ay_g[1], 10.0, 1e-10);
     assert_near(pulse.vx_m_s[2], -5.0, 0.0);
     assert_near(pulse.vy_m_s[2], 0.25, 0.0);
     assert_near(pulse.marks.t_v0_s, 0.015, 1e-12);
@@ -162,6 +162,10 @@ static void wrong_files_are_named(void **state)
         {"time_s,ax_m_s2,vx_m_s\n0.5,0,9\n", NAN, ":2: time_s must be 0"},
         {"time_s,ax_m_s2,vx_m_s\n0,0,9\n0,0,9\n", NAN, ":3: time_s must rise"},
         {"time_s,ax_m_s2,vx_m_s\n0,0,9\n", NAN, "fewer than two samples"},
+        {"time_s,ax_m_s2,vx_m_s\n0,0,9\n0.01,800,5\n", NAN, "do not go together (unit, polarity"},
+        {"time_s,ax_m_s2,vx_m_s\n0,0,50\n0.01,-800,36\n", NAN, "do not go together"},
+        {"time_s;ax_m_s2;vx_m_s\n0;0;9,5\n0,01;0;9\n", NAN,
+         ":2: vx_m_s must be a number, found '9,5'"},
         {"time_s,ax_m_s2,vx_m_s\n0,0,10\n0.01,0,9\n", 50.0,
          "begins at 36 km/h, which does not go with a speed of 50 km/h"},
         {"", NAN, ":1: column time_s is missing"},

@@ -9,6 +9,7 @@
 #include "builders/crash_builder.h"
 #include "builders/crash_library.h"
 
+#include "calibrate/fit_file.h"
 #include "calibrate/fit_search.h"
 #include "calibrate/objective.h"
 #include "calibrate/validation.h"

@@ -69,7 +69,7 @@ class Suite(unittest.TestCase):
         self.assertIn("title", listed[0])
 
     def test_vehicles_are_names_or_files(self):
-        path = os.path.join(ARGS.source, "db", "vehicles", "small_car.yaml")
+        path = os.path.join(ARGS.source, "db", "vehicles", "fleet", "small_car.yaml")
         found = rows("--vehicle", path, "--vehicle", "suv")
         self.assertEqual([row["vehicle"] for row in found[:3:2]], ["small_car", "suv"])
         foreign = [row for row in found if row["class"] == "olc_table"]
@@ -87,7 +87,7 @@ class Suite(unittest.TestCase):
         self.assertIn("kept", {row["result"] for row in found})
 
     def test_what_is_wrong_is_said(self):
-        self.assertIn("'racer' is no vehicle", call("--suite", SUITE, "--vehicle", "racer", code=2).stderr)
+        self.assertIn("no vehicle 'racer' is shipped", call("--suite", SUITE, "--vehicle", "racer", code=2).stderr)
         self.assertIn("absent.yaml", call("--suite", "absent.yaml", code=2).stderr)
         self.assertIn("go with --suite", call("--vehicle", "suv", code=2).stderr)
         self.assertIn("choose vehicles with --vehicle", call("--suite", SUITE, "car.yaml", code=2).stderr)

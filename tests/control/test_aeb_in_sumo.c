@@ -146,7 +146,7 @@ static found in_sumo(const two_cars *e)
         double now_s = cp_traffic_time_s(traffic);
         begun_s = isnan(begun_s) ? now_s : begun_s;
         cp_rectangle exact = two_cars_target_at(e, now_s - begun_s);
-        cp_rectangle there = cp_footprint_of_state(&target->after);
+        cp_rectangle there = cp_vehicle_rectangle(&target->after);
         result.astray_m =
             fmax(result.astray_m, cp_vec2_length(cp_vec2_sub(there.centre_m, exact.centre_m)));
         double fraction;

@@ -103,7 +103,7 @@ static void malformed_records_are_named(void **state)
         {"|-50|99|1000|AM|P|LEFT", "|-50|99|0|AM|P|LEFT", "field 17 (interval, microseconds)"},
         {"1|7|AC", "1|x|AC", "t1.EV5:10: field 2 (curve number)"},
         {"1|1012|DS", "1|7|DS", "field 2 (curve number): 7 is given twice"},
-        {"|P|CRUSH", "", "t1.EV5:11: field 20 (comment) is missing"},
+        {"|P|CRUSH", "", "t1.EV5:11: field 19 (channel status) is missing"},
         {"----- VEHICLE -----", "----- BARRIER -----", "no record in section VEHICLE"},
         {"----- TEST -----", "nothing", "no record in section TEST"},
     };

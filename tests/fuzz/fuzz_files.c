@@ -12,6 +12,7 @@
 #include "exchange/sumo_fcd.h"
 #include "exchange/sumo_types.h"
 #include "study/plan.h"
+#include "study/study_file.h"
 #include "study/sumo_configuration.h"
 
 #include <math.h>
@@ -113,7 +114,7 @@ void fuzz_configurations(const uint8_t *data, size_t size)
     cp_configuration_list list = {0};
     cp_error error = {0};
     fuzz_write("input.csv", data, size);
-    cp_status status = cp_configurations_csv_read("input.csv", &list, &error);
+    cp_status status = cp_configurations_csv_read("input.csv", size % 2 == 0, &list, &error);
     fuzz_judge(status, &error);
     for (size_t k = 0; status == CP_OK && k < list.count; k++) {
         const cp_listed_configuration *row = &list.row[k];

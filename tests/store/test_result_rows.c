@@ -2,6 +2,7 @@
 #include "store/fixture.h"
 
 #include "pulse/pulse_codec.h"
+#include "store/stored_pulse.h"
 
 #define MEDIAN "SELECT coalesce(olc_median_g, -1) FROM olc_by_variant WHERE variant = 'baseline'"
 
@@ -105,11 +106,14 @@ static void pulse_comes_back(void **state)
     vehicle->sample_interval_s = 0.001;
     assert_ok(cp_result_rows_commit(store, &results, &error), &error);
     int64_t crash_id = results.replication_id * 16384;
-    assert_ok(cp_result_pulse_read(store, crash_id, "b", &back, &error), &error);
+    bool there = false;
+    assert_ok(cp_stored_pulse_read(store, crash_id, NULL, "b", &back, &there, &error), &error);
+    assert_true(there);
     assert_int_equal(back.sample_count, 201);
     assert_true(fabs(back.channel[CP_CHANNEL_VX][200] + 1.5) < 1e-9);
     cp_pulse_destroy(&back);
-    assert_int_equal(cp_result_pulse_read(store, crash_id, "a", &back, &error), CP_BAD_INPUT);
+    assert_ok(cp_stored_pulse_read(store, crash_id, NULL, "a", &back, &there, &error), &error);
+    assert_false(there);
     cp_pulse_destroy(&pulse);
     cp_result_rows_destroy(&results);
     cp_store_close(store);

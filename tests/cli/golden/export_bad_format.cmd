@@ -1,0 +1,1 @@
+"$crashpulse" export "$db" --as xlsx --output x

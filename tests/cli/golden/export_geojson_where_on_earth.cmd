@@ -1,0 +1,1 @@
+"$crashpulse" export "$db" --as geojson --output x.json

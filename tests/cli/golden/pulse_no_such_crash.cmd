@@ -1,0 +1,1 @@
+"$crashpulse" pulse "$db" --crash 12

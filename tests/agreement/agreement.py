@@ -15,7 +15,8 @@ of one lane and at foes inside a junction, neither at cars on the lanes of oppos
 two edges beside a junction (road) nor at those inside a junction without right-of-way rules
 (unregulated junction), and misses corners inside the others. Exit status 1 when a collision of SUMO
 is unexplained, a match is off in time, a crash has a delta-v below 1 km/h, or there are fewer reports than
-AGREEMENT_LEAST. AGREEMENT_STEPS and AGREEMENT_SECONDS: other step lengths and a shorter run."""
+AGREEMENT_LEAST, fewer crashes than AGREEMENT_LEAST_OURS or less traffic than AGREEMENT_LEAST_VEHICLE_H: a
+network where nothing drives agrees on nothing. AGREEMENT_STEPS and AGREEMENT_SECONDS: other step lengths and a shorter run."""
 import argparse
 import collections
 import gzip
@@ -41,6 +42,8 @@ arguments = parser.parse_intermixed_args()
 build, source = arguments.build.resolve(), arguments.source.resolve()
 seconds = float(os.environ.get("AGREEMENT_SECONDS", "0"))
 least = int(os.environ.get("AGREEMENT_LEAST", "0"))  # reports of SUMO that each run must have
+least_ours = int(os.environ.get("AGREEMENT_LEAST_OURS", "0"))  # likewise crashes of ours
+least_hours = float(os.environ.get("AGREEMENT_LEAST_VEHICLE_H", "0"))  # likewise traffic
 settings = "".join(f"{name}='{os.environ[name]}' " for name in ("AGREEMENT_SECONDS", "AGREEMENT_STEPS")
                    if name in os.environ)
 steps = [float(s) for s in os.environ.get("AGREEMENT_STEPS", "0.1 0.05").split()]
@@ -271,7 +274,11 @@ with tempfile.TemporaryDirectory() as folder:
             sys.stdout.flush()
             table.append((name, f"{step:g}", *(counts[c] for c in columns),
                           ", ".join(f"{k} {v}" for k, v in sorted(reasons.items()))))
-            agrees &= not bad and counts["sumo"] >= least
+            if counts["sumo"] < least or counts["ours"] < least_ours or hours < least_hours:
+                print(f"    too little to agree on: {counts['sumo']} reports, {counts['ours']} crashes, "
+                      f"{hours:.2f} vehicle-hours")
+                agrees = False
+            agrees &= not bad
 if arguments.output:
     arguments.output.write_text("\n\n".join((
         "# SUMO's collisions against ours, and what was found",

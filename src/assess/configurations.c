@@ -106,8 +106,8 @@ static bool is_struck(const cp_listed_configuration *row, const char *list_path,
                       const cp_crash_facts *facts, const cp_vehicle_model *by_role[2])
 {
     cp_touching_body body[2];
-    cp_touch touch = {facts->contact_m,
-                      {facts->configuration.side[0], facts->configuration.side[1]}};
+    cp_first_touch touch = {facts->contact_m,
+                            {facts->configuration.side[0], facts->configuration.side[1]}};
     for (int role = 0; role < 2; role++) {
         const cp_body_state *state = &facts->configuration.vehicle[role];
         const cp_vehicle_model *model = by_role[role];

@@ -89,7 +89,7 @@ double cp_front_edges_overlap_m(const cp_touching_body body[2])
     return fmin(high_m[0], high_m[1]) - fmax(low_m[0], low_m[1]);
 }
 
-bool cp_contact_is_crash(const cp_touching_body body[2], const cp_touch *touch)
+bool cp_contact_is_crash(const cp_touching_body body[2], const cp_first_touch *touch)
 {
     bool front_on_front = touch->side[0] == CP_SIDE_FRONT && touch->side[1] == CP_SIDE_FRONT;
     double speed_m_s =

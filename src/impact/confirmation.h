@@ -29,7 +29,7 @@ double cp_front_edges_overlap_m(const cp_touching_body body[2]);
 /* True for a crash: it goes deep, or it is front on front, at 0.8 m/s or more (slower nothing goes
  * deep in the time, at any angle), and the front edges meet over at least 10 % of the narrower
  * width. The same whichever body comes first. */
-bool cp_contact_is_crash(const cp_touching_body body[2], const cp_touch *touch);
+bool cp_contact_is_crash(const cp_touching_body body[2], const cp_first_touch *touch);
 
 /* Width over which the other body lies in the way of a body that goes straight on: of its front
  * edge, what the other covers across its heading; <= 0 when it would pass. */

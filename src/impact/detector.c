@@ -186,7 +186,7 @@ static bool is_crash_without_impossible(cp_impact *impact)
         body[role] = cp_touching_body_possible(&body[role]);
         is_any = true;
     }
-    cp_touch touch = {impact->contact_m, {impact->side[0], impact->side[1]}};
+    cp_first_touch touch = {impact->contact_m, {impact->side[0], impact->side[1]}};
     if (is_any && !cp_contact_is_crash(body, &touch))
         return false;
     for (int role = 0; role < 2; role++) {
@@ -288,12 +288,12 @@ static cp_impact impact_of(const cp_detector_scene *scene, const cp_vehicle_moti
                                          motion[k], scene->step_length_s, fraction),
                                      .yaw_rate_rad_s = jumped ? 0.0 : motion[k]->yaw_rate_rad_s};
     }
-    cp_touch touch = cp_touch_of(body);
+    cp_first_touch touch = cp_touch_of(body);
 
     // Into roles.
     int a = role_a(scene, motion, touch.side);
     cp_touching_body by_role[2] = {body[a], body[1 - a]};
-    cp_touch touch_by_role = {touch.point_m, {touch.side[a], touch.side[1 - a]}};
+    cp_first_touch touch_by_role = {touch.point_m, {touch.side[a], touch.side[1 - a]}};
     cp_impact impact = {.time_s = scene->time_s - (1.0 - fraction) * scene->step_length_s,
                         .contact_m = touch.point_m,
                         .verdict = cp_contact_is_crash(by_role, &touch_by_role)

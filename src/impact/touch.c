@@ -105,7 +105,7 @@ static cp_contact_side side_at_corner(const cp_touching_body body[2], int own, c
     return local_m.y > 0.0 ? CP_SIDE_LEFT : CP_SIDE_RIGHT;
 }
 
-cp_touch cp_touch_of(const cp_touching_body body[2])
+cp_first_touch cp_touch_of(const cp_touching_body body[2])
 {
     // What of the other faces the edge: a corner, or an edge parallel to it.
     edge_view view = touching_edge(body);
@@ -121,7 +121,7 @@ cp_touch cp_touch_of(const cp_touching_body body[2])
     double place_m = 0.5 * (low_m + high_m);
     cp_vec2 local_m =
         cp_vec2_add(cp_vec2_scale(view.normal, view.out_m), cp_vec2_scale(view.along, place_m));
-    cp_touch touch = {.point_m = cp_pose_to_world(frame_of(&body[owner].rectangle), local_m)};
+    cp_first_touch touch = {.point_m = cp_pose_to_world(frame_of(&body[owner].rectangle), local_m)};
 
     // Two edges are two sides; a corner is of the side that meets the other.
     if (is_parallel && high_m - low_m > TOLERANCE_M) {

@@ -13,16 +13,16 @@ typedef struct cp_touching_body {
     double yaw_rate_rad_s;
 } cp_touching_body;
 
-typedef struct cp_touch {
+typedef struct cp_first_touch {
     cp_vec2 point_m;
     cp_contact_side side[2];
-} cp_touch;
+} cp_first_touch;
 
 /* Contact point and sides of two rectangles whose separation is zero to rounding (or that overlap:
  * then along the direction that parts them soonest). A corner on an edge: the corner. Two edges
  * parallel to within 1 cm over the edge: the middle of their common stretch. The side is the edge
  * that holds the point; within 1 cm of a corner, the one of its two edges whose outward normal is
  * more opposed to the other body's relative velocity at the point. */
-cp_touch cp_touch_of(const cp_touching_body body[2]);
+cp_first_touch cp_touch_of(const cp_touching_body body[2]);
 
 #endif

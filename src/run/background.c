@@ -42,7 +42,7 @@ static cp_status add_contact(const cp_traffic *traffic, const cp_found_contact *
 static cp_status fill_rows(const cp_simulation *simulation, cp_background_rows *rows,
                            cp_error *error)
 {
-    cp_exposure counted = cp_simulation_counted(simulation, &rows->simulated_s);
+    cp_driven_exposure counted = cp_simulation_counted(simulation, &rows->simulated_s);
     rows->vehicle_km = counted.vehicle_km;
     rows->vehicle_h = counted.vehicle_h;
     rows->departed = counted.departed;

@@ -58,7 +58,8 @@ static cp_status run_steps(replication_run *run, cp_error *error)
     }
     if (status != CP_OK)
         return status;
-    cp_exposure counted = cp_simulation_counted(&run->simulation, &run->results->simulated_s);
+    cp_driven_exposure counted =
+        cp_simulation_counted(&run->simulation, &run->results->simulated_s);
     run->results->vehicle_km = counted.vehicle_km;
     run->results->vehicle_h = counted.vehicle_h;
     run->results->departed = counted.departed;

@@ -285,17 +285,17 @@ cp_status cp_simulation_step(cp_simulation *simulation, cp_error *error)
     return status;
 }
 
-cp_exposure cp_simulation_counted(const cp_simulation *simulation, double *simulated_s)
+cp_driven_exposure cp_simulation_counted(const cp_simulation *simulation, double *simulated_s)
 {
     // A traffic that ended before it counted.
     *simulated_s = 0.0;
     if (simulation->steps <= simulation->warmup_steps)
-        return (cp_exposure){0};
-    cp_exposure all = cp_traffic_exposure(simulation->traffic);
-    const cp_exposure *before = &simulation->warmup_exposure;
+        return (cp_driven_exposure){0};
+    cp_driven_exposure all = cp_traffic_exposure(simulation->traffic);
+    const cp_driven_exposure *before = &simulation->warmup_exposure;
     *simulated_s = (double)(simulation->steps - simulation->warmup_steps) *
                    cp_traffic_step_length_s(simulation->traffic);
-    return (cp_exposure){.vehicle_km = all.vehicle_km - before->vehicle_km,
-                         .vehicle_h = all.vehicle_h - before->vehicle_h,
-                         .departed = all.departed - before->departed};
+    return (cp_driven_exposure){.vehicle_km = all.vehicle_km - before->vehicle_km,
+                                .vehicle_h = all.vehicle_h - before->vehicle_h,
+                                .departed = all.departed - before->departed};
 }

@@ -62,10 +62,10 @@ typedef struct cp_simulation {
     cp_cross_check check;
     double counted_from_s; /* SUMO clock: end of the warm-up */
     long long steps, warmup_steps;
-    cp_exposure warmup_exposure; /* at the end of the warm-up, once that is over */
-    double stay_s;               /* of the study: how long crashed cars stay */
-    cp_history *history;         /* NULL: none is kept */
-    cp_found_history *before;    /* one for each counted crash, in their order; if history */
+    cp_driven_exposure warmup_exposure; /* at the end of the warm-up, once that is over */
+    double stay_s;                      /* of the study: how long crashed cars stay */
+    cp_history *history;                /* NULL: none is kept */
+    cp_found_history *before;           /* one for each counted crash, in their order; if history */
     size_t before_count;
     size_t before_room;
     cp_found_contact *found; /* since the beginning, in order of time, then ids */
@@ -93,7 +93,7 @@ void cp_simulation_end(cp_simulation *simulation);
 CP_MUST_CHECK cp_status cp_simulation_step(cp_simulation *simulation, cp_error *error);
 
 /* What counts: exposure after the warm-up, and the time it took, s. */
-cp_exposure cp_simulation_counted(const cp_simulation *simulation, double *simulated_s);
+cp_driven_exposure cp_simulation_counted(const cp_simulation *simulation, double *simulated_s);
 
 /* Whether a found contact is a confirmed crash, counted or not. */
 bool cp_found_is_crash(const cp_found_contact *found);

@@ -34,7 +34,7 @@ struct cp_traffic {
     size_t held_count;
     size_t held_room;
     bool lacks_places; /* of the states */
-    cp_exposure exposure;
+    cp_driven_exposure exposure;
 };
 
 cp_status cp_traffic_create_from(const cp_traffic_source *source, double step_length_s,
@@ -447,7 +447,7 @@ cp_lateral_overlays *cp_traffic_overlays(const cp_traffic *traffic)
     return traffic->overlays;
 }
 
-cp_exposure cp_traffic_exposure(const cp_traffic *traffic)
+cp_driven_exposure cp_traffic_exposure(const cp_traffic *traffic)
 {
     return traffic->exposure;
 }

@@ -71,11 +71,11 @@ typedef struct cp_traffic_options {
 } cp_traffic_options;
 
 /* Exposure so far. */
-typedef struct cp_exposure {
+typedef struct cp_driven_exposure {
     double vehicle_km;
     double vehicle_h;
     size_t departed; /* vehicles inserted */
-} cp_exposure;
+} cp_driven_exposure;
 
 CP_MUST_CHECK cp_status cp_traffic_create(const cp_traffic_options *options, cp_traffic **traffic,
                                           cp_error *error);
@@ -141,7 +141,7 @@ CP_MUST_CHECK cp_status cp_traffic_lane_width(const cp_traffic *traffic,
 const cp_traffic_source *cp_traffic_commands(const cp_traffic *traffic);
 /* Where the cars are that drift off SUMO's path; commands for the coming step like the others. */
 cp_lateral_overlays *cp_traffic_overlays(const cp_traffic *traffic);
-cp_exposure cp_traffic_exposure(const cp_traffic *traffic);
+cp_driven_exposure cp_traffic_exposure(const cp_traffic *traffic);
 /* Take a crashed vehicle off the road now; gone already is fine. */
 CP_MUST_CHECK cp_status cp_traffic_remove(cp_traffic *traffic, uint32_t vehicle, cp_error *error);
 /* Leave a crashed vehicle where it is, standing, until the clock is at until_s; then it is removed.

@@ -163,10 +163,28 @@ class House:
         for file in sorted(without - listed):
             self.breach(self.source / "src" / file, 1, f"has neither a test of its name nor stands in {path.name}")
 
+    # ---- names of types ------------------------------------------------------------------------
+
+    def check_types(self):
+        """One name, one type: structs, enums and unions that headers define, but for those listed."""
+        path = self.lists / "types_twice.txt"
+        known = {name: number for number, name, reason in read_list(path) if reason}
+        defined = {}
+        for header in (p for p in self.files if p.suffix == ".h"):
+            for found in re.finditer(r"^(?:typedef )?(?:struct|enum|union) (cp_\w+)\s*\{", self.text[header], re.M):
+                defined.setdefault(found.group(1), []).append((header, self.text[header].count("\n", 0, found.start()) + 1))
+        for name, places in sorted(defined.items()):
+            others = [p.relative_to(self.source).as_posix() for p, _ in places]
+            if len(places) > 1 and known.pop(name, None) is None:
+                self.breach(*places[1], f"{name} is another type in {others[0]} already")
+        for name, number in known.items():
+            self.breach(path, number, f"{name} is one type, or none, now")
+
 
 def main():
     house = House(pathlib.Path(sys.argv[1]).resolve())
-    for check in (house.check_law, house.check_circles, house.check_files, house.check_lengths, house.check_tests):
+    for check in (house.check_law, house.check_circles, house.check_files, house.check_lengths, house.check_tests,
+                  house.check_types):
         check()
     print("\n".join(house.breaches) if house.breaches else f"{len(house.files)} files keep the rules of the house")
     return 1 if house.breaches or not house.files else 0

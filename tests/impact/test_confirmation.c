@@ -26,7 +26,7 @@ static cp_touching_body car(double front_x_m, double front_y_m, double yaw_rad, 
 static bool is_crash(cp_touching_body a, cp_touching_body b)
 {
     cp_touching_body body[2] = {a, b};
-    cp_touch touch = cp_touch_of(body);
+    cp_first_touch touch = cp_touch_of(body);
     return cp_contact_is_crash(body, &touch);
 }
 

@@ -29,7 +29,7 @@ static void assert_touch(cp_touching_body a, cp_touching_body b, double x_m, dou
                          cp_contact_side side_a, cp_contact_side side_b)
 {
     cp_touching_body body[2] = {a, b};
-    cp_touch touch = cp_touch_of(body);
+    cp_first_touch touch = cp_touch_of(body);
     assert_near(touch.point_m.x, x_m, 1e-9);
     assert_near(touch.point_m.y, y_m, 1e-9);
     assert_int_equal(touch.side[0], side_a);
@@ -62,7 +62,7 @@ static void a_whiff_of_yaw_does_not_move_the_point_to_a_corner(void **state)
 {
     (void)state;
     cp_touching_body body[2] = {car(0, 0, 0, 10), car(0, 0.4, CP_PI + 0.002, 10)};
-    cp_touch touch = cp_touch_of(body);
+    cp_first_touch touch = cp_touch_of(body);
     assert_near(touch.point_m.y, 0.2, 0.005);
     assert_int_equal(touch.side[0], CP_SIDE_FRONT);
     assert_int_equal(touch.side[1], CP_SIDE_FRONT);
@@ -163,7 +163,7 @@ static void mirrored_and_turned_scenes_give_the_same_answer(void **state)
             bool apart = cp_rectangle_separation(&body[0].rectangle, &body[1].rectangle) > 0.0;
             *(apart ? &far_m : &near_m) = middle_m;
         }
-        cp_touch touch = cp_touch_of(body);
+        cp_first_touch touch = cp_touch_of(body);
         for (int k = 0; k < 2; k++) {
             cp_vec2 local = cp_pose_to_local(
                 (cp_pose){body[k].rectangle.centre_m, body[k].rectangle.yaw_rad}, touch.point_m);
@@ -171,9 +171,9 @@ static void mirrored_and_turned_scenes_give_the_same_answer(void **state)
         }
 
         cp_touching_body mirrored[2] = {mirror(body[0]), mirror(body[1])};
-        cp_touch reflection = cp_touch_of(mirrored);
+        cp_first_touch reflection = cp_touch_of(mirrored);
         cp_touching_body turned[2] = {turn(body[0], u[4]), turn(body[1], u[4])};
-        cp_touch rotation = cp_touch_of(turned);
+        cp_first_touch rotation = cp_touch_of(turned);
         cp_vec2 point_m = cp_vec2_rotate(rotation.point_m, -u[4]);
         assert_near(reflection.point_m.x, touch.point_m.x, 1e-9);
         assert_near(reflection.point_m.y, -touch.point_m.y, 1e-9);

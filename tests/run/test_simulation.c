@@ -55,7 +55,7 @@ static void a_crash_is_found_and_its_cars_leave(void **state)
 
     // Both drove from 0.1 s to 2.7 s.
     double simulated_s;
-    cp_exposure counted = cp_simulation_counted(&simulation, &simulated_s);
+    cp_driven_exposure counted = cp_simulation_counted(&simulation, &simulated_s);
     assert_true(fabs(simulated_s - 2.7) < 1e-9);
     assert_true(fabs(counted.vehicle_km - 2 * 26.0 / 1000.0) < 1e-9);
     assert_true(fabs(counted.vehicle_h - 2 * 2.6 / 3600.0) < 1e-9);
@@ -83,7 +83,7 @@ static void nothing_counts_before_the_warm_up_ends(void **state)
     assert_true(cp_found_is_crash(&simulation.found[0]));
     // They have gone all the same; one car drove on for two seconds.
     assert_int_equal(run_road_expected(), 1);
-    cp_exposure counted = cp_simulation_counted(&simulation, &simulated_s);
+    cp_driven_exposure counted = cp_simulation_counted(&simulation, &simulated_s);
     assert_true(fabs(simulated_s - 2.0) < 1e-9);
     assert_true(fabs(counted.vehicle_km - 0.02) < 1e-9);
     assert_int_equal(counted.departed, 0);

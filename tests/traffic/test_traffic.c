@@ -47,13 +47,13 @@ static void exposure_is_what_was_driven(void **unused)
     (void)unused;
     cp_traffic *traffic = create(0.05);
     run_until(traffic, 1.05);
-    cp_exposure start = cp_traffic_exposure(traffic);
+    cp_driven_exposure start = cp_traffic_exposure(traffic);
     assert_int_equal(start.departed, 3);
     assert_true(start.vehicle_km == 0.0);
 
     // Three cars at 20 m/s for 50 s: 3 km in 150 vehicle seconds.
     run_until(traffic, 51.05);
-    cp_exposure end = cp_traffic_exposure(traffic);
+    cp_driven_exposure end = cp_traffic_exposure(traffic);
     assert_true(fabs(end.vehicle_km - 3.0) < 1e-9);
     assert_true(fabs(end.vehicle_h - 150.0 / 3600.0) < 1e-9);
     assert_false(cp_traffic_finished(traffic));

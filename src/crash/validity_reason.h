@@ -2,7 +2,7 @@
 #ifndef CRASH_VALIDITY_REASON_H
 #define CRASH_VALIDITY_REASON_H
 
-/* Whether one vehicle's crash lies inside what its model was calibrated for: a set of what is
+/* Whether one vehicle's crash lies inside what tests speak for (crash/validity.h): a set of what is
  * outside, 0 = inside. X(name, bit, text). */
 #define CP_VALIDITY_REASONS(X)                                                                     \
     X(CP_OUTSIDE_SPEED, 0, "speed")                                                                \

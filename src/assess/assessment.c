@@ -62,7 +62,8 @@ static cp_status add_vehicle(cp_study *study, const char *type, const char *mode
 }
 
 // The vehicles of one row; a file among them is read once, to see whether it is one.
-static cp_status add_listed(cp_assessment *self, const cp_listed_configuration *row, cp_error *error)
+static cp_status add_listed(cp_assessment *self, const cp_listed_configuration *row,
+                            cp_error *error)
 {
     cp_study *study = &self->study;
     cp_vehicle_model model;

@@ -109,8 +109,8 @@ cp_status cp_library_from_file(const char *path, cp_library **library, cp_error 
     if (own->written == NULL || own->path == NULL || own->name == NULL)
         status = cp_fail_memory(error, path);
     else if (status == CP_OK && !is_name(own->name))
-        status = cp_fail(error, CP_BAD_INPUT, "%s: makes the name '%s' of a function", path,
-                         own->name);
+        status =
+            cp_fail(error, CP_BAD_INPUT, "%s: makes the name '%s' of a function", path, own->name);
     if (status == CP_OK)
         *library = own;
     else

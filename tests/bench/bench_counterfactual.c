@@ -91,9 +91,8 @@ static outcome run(const char *data, const char *worker, const traffic *what, in
         exit(1);
     snprintf(study, sizeof study, "%s/study.yaml", folder);
     snprintf(db, sizeof db, "%s/study.db", folder);
-    int used =
-        snprintf(text, sizeof text, HEAD, treatments > 0 ? "counterfactual" : "paired_seeds",
-                 what->duration_s, data, data, what->scenario, what->scenario, what->errors);
+    int used = snprintf(text, sizeof text, HEAD, treatments > 0 ? "counterfactual" : "paired_seeds",
+                        what->duration_s, data, data, what->scenario, what->scenario, what->errors);
     for (int k = 0; k < treatments; k++)
         used += snprintf(text + used, sizeof text - (size_t)used,
                          "  - {name: aeb%d, functions: [{function: aeb}]}\n", k);

@@ -43,8 +43,11 @@ class House:
 
     def check_law(self):
         allowed, libraries = {}, {}
-        for _, name, value in read_list(self.lists / "include_law.txt"):
-            (libraries if name.startswith("<") else allowed)[name] = set(value.split())
+        for number, name, value in read_list(self.lists / "include_law.txt"):
+            laws = libraries if name.startswith("<") else allowed
+            if name in laws:
+                self.breach(self.lists / "include_law.txt", number, f"'{name}' stands there twice")
+            laws[name] = set(value.split())
         for path in self.files:
             room = self.room(path)
             if room not in allowed:

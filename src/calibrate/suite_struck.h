@@ -2,7 +2,7 @@
 #ifndef CALIBRATE_SUITE_STRUCK_H
 #define CALIBRATE_SUITE_STRUCK_H
 
-#include "calibrate/suite_row.h"
+#include "calibrate/suite_case.h"
 
 /* Cases in which the judged vehicle is struck on a side or its rear. */
 

@@ -3,6 +3,7 @@
 
 #include "core/nearest.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #ifndef CORE_YAML_STRUCTURE_H
 #define CORE_YAML_STRUCTURE_H
 
-#include "core/yaml_file.h"
+#include "core/yaml_place.h"
 
 /* Whether the values of a file are of the kinds its schema has, before libcyaml reads it:
  * libcyaml's own words for that ("Expecting MAPPING, got event: SCALAR") do not help who wrote the

@@ -37,7 +37,8 @@ typedef struct cp_body_state {
 typedef struct cp_crash_configuration {
     bool against_barrier;
     cp_body_state vehicle[2]; /* [1] unused against a barrier */
-    cp_contact_side side[2];  /* where each is struck */
+    cp_contact_side side[2];  /* where each is struck; a car struck elsewhere than on its front is
+                               * simulated with its sides and rear (crash/struck_structure.h) */
     cp_barrier barrier;
     cp_pose barrier_pose; /* middle of its face; x axis is its depth direction */
 } cp_crash_configuration;

@@ -206,9 +206,8 @@ static cp_status set_up(crash_run *run, const cp_vehicle_model *models[2],
                         const cp_crash_configuration *configuration, cp_error *error)
 {
     cp_pose frame = {configuration->vehicle[0].cog_m, configuration->vehicle[0].yaw_rad};
-    cp_body_state states[2];
-    for (int k = 0; k < run->car_count; k++)
-        states[k] = seen_from(frame, configuration->vehicle[k]);
+    cp_body_state states[2] = {seen_from(frame, configuration->vehicle[0]),
+                               seen_from(frame, configuration->vehicle[1])};
     if (run->car_count == 2) {
         double share = models[1]->mass_kg / (models[0]->mass_kg + models[1]->mass_kg);
         cp_vec2 apart = cp_vec2_sub(states[1].velocity_m_s, states[0].velocity_m_s);

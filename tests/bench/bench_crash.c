@@ -22,31 +22,55 @@ static cp_crash_configuration bench_case(const cp_vehicle_model *model, bool car
                                        SPEED_KM_H[k % 4], OFFSET_MM[k % 6], angle_deg);
 }
 
+// Case number k of an equal car's front into a standing side or rear.
+static cp_crash_configuration struck_case(const cp_vehicle_model *model, cp_contact_side side,
+                                          int k)
+{
+    cp_error error = {0};
+    cp_crash_configuration configuration;
+    double at_m = side == CP_SIDE_REAR ? 0.15 * (k % 6) : 0.4 * (k % 6) - 1.4;
+    if (cp_crash_configuration_struck(model, model, side, at_m, cp_rad_from_deg(10.0 * (k % 3)),
+                                      0.0, cp_m_s_from_km_h(25.0 + 10.0 * (k % 4)), &configuration,
+                                      &error) != CP_OK)
+        crash_builder_stop(&error);
+    return configuration;
+}
+
 static double median(double *values, size_t count)
 {
     gsl_sort(values, 1, count);
     return gsl_stats_median_from_sorted_data(values, 1, count);
 }
 
-static void print_speed(const cp_vehicle_model *model, bool cars)
+typedef enum what_is_met { BARRIER, CAR, SIDE_OF_CAR, REAR_OF_CAR, WHAT_COUNT } what_is_met;
+
+static cp_crash_configuration case_of(const cp_vehicle_model *model, what_is_met what, int k)
 {
+    return what == SIDE_OF_CAR   ? struck_case(model, CP_SIDE_LEFT, k)
+           : what == REAR_OF_CAR ? struck_case(model, CP_SIDE_REAR, k)
+                                 : bench_case(model, what == CAR, k);
+}
+
+static void print_speed(const cp_vehicle_model *model, what_is_met what)
+{
+    static const char *const NAME[WHAT_COUNT] = {"against barrier", "car to car", "into a side",
+                                                 "into a rear"};
     cp_crash_options options = cp_crash_options_default();
     double ms[CASES * REPEATS];
     size_t count = 0;
     for (int repeat = 0; repeat < REPEATS; repeat++) {
         for (int k = 0; k < CASES; k++) {
-            cp_crash_configuration configuration = bench_case(model, cars, k);
+            cp_crash_configuration configuration = case_of(model, what, k);
             double started_s = cp_clock_s();
-            cp_crash_result result =
-                crash_builder_simulate(model, cars ? model : NULL, &configuration, &options);
+            cp_crash_result result = crash_builder_simulate(model, what == BARRIER ? NULL : model,
+                                                            &configuration, &options);
             ms[count++] = 1e3 * (cp_clock_s() - started_s);
             cp_crash_result_destroy(&result);
         }
     }
     double middle_ms = median(ms, count);
     printf("%-18s median %6.2f ms a run, p90 %6.2f ms, %6.0f runs/s on one core, paper/ours %.0f\n",
-           cars ? "car to car" : "against barrier", middle_ms, ms[count * 9 / 10], 1e3 / middle_ms,
-           PAPER_MS / middle_ms);
+           NAME[what], middle_ms, ms[count * 9 / 10], 1e3 / middle_ms, PAPER_MS / middle_ms);
 }
 
 // One evaluation of a fit: every configuration of the reference study, on one core.
@@ -112,8 +136,8 @@ int main(int argc, char **argv)
     if (cp_crash_library_begin(&error) != CP_OK)
         crash_builder_stop(&error);
     printf("vehicle %s\n", model.name);
-    for (int cars = 0; cars < 2; cars++)
-        print_speed(&model, cars);
+    for (what_is_met what = BARRIER; what < WHAT_COUNT; what++)
+        print_speed(&model, what);
     if (argc > 2) {
         cp_reference reference;
         if (cp_reference_load(argv[2], &reference, &error) != CP_OK)

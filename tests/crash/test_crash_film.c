@@ -115,6 +115,35 @@ static void members_shorten_as_the_front_is_crushed(void **state)
     cp_crash_film_destroy(&film);
 }
 
+// A struck side moves in by as much as the crash says; a barrier is its body alone.
+static void a_struck_side_is_seen_pushed_in(void **state)
+{
+    (void)state;
+    cp_vehicle_model car = cp_vehicle_model_default();
+    cp_barrier wall = cp_barrier_default();
+    cp_vehicle_model barrier = cp_vehicle_model_of_barrier(&wall);
+    cp_crash_configuration configuration;
+    cp_error error = {0};
+    assert_int_equal(cp_crash_configuration_struck(&car, &barrier, CP_SIDE_LEFT, 0.0, 0.0, 0.0, 9.0,
+                                                   &configuration, &error),
+                     CP_OK);
+    cp_crash_film film = cp_crash_film_default();
+    cp_crash_options options = cp_crash_options_default();
+    options.film = &film;
+    cp_crash_result result = crash_builder_simulate(&car, &barrier, &configuration, &options);
+    const cp_film_shape *first = &film.frame[0].car[0].part[CP_FILM_BODY];
+    const cp_film_shape *last = &film.frame[film.frame_count - 1].car[0].part[CP_FILM_BODY];
+    assert_near(first->width_m, car.width_m, 1e-9);
+    assert_true(result.struck[0].depth_m > 0.1);
+    assert_near(first->width_m - last->width_m, result.struck[0].depth_m, 1e-6);
+    assert_near(last->centre_m.y, -0.5 * result.struck[0].depth_m, 1e-6);
+    const cp_film_shape *part = film.frame[0].car[1].part;
+    assert_near(part[CP_FILM_BODY].length_m, wall.depth_m, 1e-9);
+    assert_near(part[CP_FILM_ENGINE].length_m, 0.0, 0.0);
+    cp_crash_result_destroy(&result);
+    cp_crash_film_destroy(&film);
+}
+
 static void filming_changes_nothing(void **state)
 {
     (void)state;
@@ -162,6 +191,7 @@ int main(void)
         cmocka_unit_test(frames_come_at_their_times),
         cmocka_unit_test(the_first_frame_shows_undeformed_cars_that_touch),
         cmocka_unit_test(members_shorten_as_the_front_is_crushed),
+        cmocka_unit_test(a_struck_side_is_seen_pushed_in),
         cmocka_unit_test(filming_changes_nothing),
         cmocka_unit_test(a_film_without_interval_is_refused),
     };

@@ -29,9 +29,9 @@ JOIN scenario AS s ON s.id = cv.scenario_id
 JOIN variant AS v ON v.id = cv.variant_id
 WHERE cv.frontal = 1;
 
--- Which model each SUMO vehicle type crashed as, and why: chosen_by is study, sumo_type,
--- study_default or class_and_size; without a model, reason says why (README, "Which car a SUMO
--- vehicle crashes as").
+-- Which model each SUMO vehicle type crashed as (of a type whose cars are drawn all of them), and why:
+-- chosen_by is study, sumo_type, study_default, class_and_size, fleet or market; without a model, reason
+-- says why (README, "Which car a SUMO vehicle crashes as").
 DROP VIEW IF EXISTS vehicle_type_model;
 CREATE VIEW vehicle_type_model AS
 SELECT s.name AS scenario, t.key AS sumo_type, t.value ->> 'model' AS vehicle_model,
@@ -84,6 +84,22 @@ JOIN scenario AS s ON s.id = cv.scenario_id
 JOIN variant AS v ON v.id = cv.variant_id
 JOIN json_each('["' || replace(cv.validity, ',', '","') || '"]') AS r
 WHERE cv.validity <> 'inside';
+
+-- Vehicles struck on a side or their rear, each with who struck it: OLC says nothing of them, lateral
+-- delta-v, direction of force, ASI and intrusion do.
+DROP VIEW IF EXISTS struck_vehicle;
+CREATE VIEW struck_vehicle AS
+SELECT s.name AS scenario, v.name AS variant, r.number AS replication, r.seed AS seed,
+       c.closing_speed_m_s AS closing_speed_m_s, c.angle_rad AS angle_rad, w.sumo_id AS other_sumo_id,
+       w.vehicle_model AS other_model, w.mass_kg AS other_mass_kg, w.contact_side AS other_side,
+       w.olc_g AS other_olc_g, w.olc_status AS other_olc_status, cv.*
+FROM crash_vehicle AS cv
+JOIN crash_vehicle AS w ON w.crash_id = cv.crash_id AND w.role <> cv.role
+JOIN crash AS c ON c.id = cv.crash_id
+JOIN replication AS r ON r.id = c.replication_id
+JOIN scenario AS s ON s.id = cv.scenario_id
+JOIN variant AS v ON v.id = cv.variant_id
+WHERE cv.frontal = 0;
 
 -- One row for each driver error that led to a crash (crash_driver_error.is_cause): whose it was, and
 -- how many led to it. None for a crash without a driver error, nor for one whose crash_vehicle.error_count

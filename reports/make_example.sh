@@ -5,7 +5,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 db=${1:-build/example.db}
-[ $# -gt 0 ] || build/crashpulse run sumo_scenarios/adas_comparison/study.yaml --db "$db"
+[ $# -gt 0 ] || build/crashpulse run build/sumo_scenarios/adas_comparison/study.yaml --db "$db"
 mkdir -p reports/example
 build/crashpulse compare "$db" --no-store >reports/example/compare.txt
 for kind in rates outcomes difference severity benefit; do

@@ -5,9 +5,9 @@
     python3 db/validation/quantiles.py [REFERENCES] [--output FOLDER | --axes]
 
 REFERENCES (default ../shared/reference beside the project) holds iihs_small_overlap/velocities.csv,
-nhtsa_frontal/crush_and_peak.csv, car_to_car/nhtsa_oblique.csv and car_to_car/reconstructed.csv.
-Written to FOLDER (default: here): quantiles.csv, nhtsa_oblique.csv, reconstructed.csv. Quantiles are
-linear between the sorted values (rank (n - 1) p), as numpy and R type 7 have them."""
+nhtsa_frontal/crush_and_peak.csv, nhtsa_crush/crush.csv, car_to_car/nhtsa_oblique.csv and
+car_to_car/reconstructed.csv. Written to FOLDER (default: here): quantiles.csv, nhtsa_oblique.csv,
+reconstructed.csv, reconstructed_struck.csv. Quantiles are linear between the sorted values (rank (n - 1) p), as numpy and R type 7 have them."""
 import argparse
 import csv
 import math
@@ -27,6 +27,9 @@ QUANTILES_SOURCE = """\
 #   55-58 km/h, wall_30deg_40 39.5-40.7 km/h with the wall turned by 30 degrees either way. crush_mm:
 #   integral of the velocity along x while it is positive, at most 300 ms; peak_g: CFC60. Source:
 #   US DOT NHTSA vehicle crash tests as derived by github.com/yangduhi/pulse_analysis.
+# mdb_side_*: sides struck by the moving deformable barrier of FMVSS 214 at 60-64 km/h, largest static
+#   crush; pole_side_*: sides driven against a pole at 75 degrees, 30.9-32.9 km/h, likewise; sedan:
+#   sedans and coupes, light: all of the tests. Source: US DOT NHTSA vehicle crash tests as republished by github.com/yangduhi/side_loadcell.
 """
 OBLIQUE_SOURCE = """\
 # Two cars near 56 km/h, headings 30 to 32 degrees from oncoming: US DOT NHTSA tests 4363, 4364, 4438
@@ -40,6 +43,12 @@ RECONSTRUCTED_SOURCE = """\
 # iScience 2022, supplement A7, CC BY 4.0 (https://creativecommons.org/licenses/by/4.0/); both rows of
 # a crash in one, columns of persons left out, directions of travel made a heading difference.
 """
+STRUCK_SOURCE = """\
+# Real crashes of two cars, the first struck on its side or rear by the front of the second:
+# reconstructions, not measurements; source and makers as of reconstructed.csv. angle_deg: heading of the
+# second against square to the struck side, counter-clockwise.
+"""
+INWARDS_DEG = {"Left-side": -90.0, "Right-side": 90.0, "Rear": 0.0}
 
 
 def quantile(values, share):
@@ -80,9 +89,21 @@ def walls(references):
             yield population, quantity, "", numbers(rows, column)
 
 
+def struck(references):
+    tests = read(references / "nhtsa_crush" / "crush.csv")
+    tests = [row for row in tests if row["quality_tier"] != "X_Exclude" and float(row["speed_km_h"] or 0) > 0]
+    for population, role, slowest, fastest in (("mdb_side", "struck_by_mdb", 60.0, 64.0),
+                                               ("pole_side", "into_pole", 30.9, 32.9)):
+        rows = [row for row in tests if row["crash_role"] == role and slowest <= float(row["speed_km_h"]) <= fastest
+                and float(row["max_crush_mm"]) > 0 and "weight_suspect" not in row["flags"]]
+        sedans = [row for row in rows if "SEDAN" in row["body"] or "COUPE" in row["body"]]
+        yield population + "_sedan", "struck_mm", "", numbers(sedans, "max_crush_mm")
+        yield population + "_light", "struck_mm", "", numbers(rows, "max_crush_mm")
+
+
 def quantiles(references):
     lines = ["population,quantity,time_ms,tests,p05,p25,p50,p75,p95"]
-    for group in (walls, small_overlap):
+    for group in (walls, small_overlap, struck):
         for population, quantity, time_ms, values in group(references):
             figures = [quantile(values, share) for share in (.05, .25, .5, .75, .95)]
             lines.append(",".join([population, quantity, str(time_ms), str(len(values))]
@@ -121,6 +142,25 @@ def reconstructed(references):
     return RECONSTRUCTED_SOURCE + "\n".join(lines) + "\n"
 
 
+def reconstructed_struck(references):
+    lines = ["test,struck,speed_1_m_s,speed_2_m_s,angle_deg,mass_1_kg,mass_2_kg,delta_v_1_m_s,delta_v_2_m_s"]
+    cases = {}
+    for row in read(references / "car_to_car" / "reconstructed.csv"):
+        cases.setdefault(row["case"], []).append(row)
+    for case, rows in cases.items():
+        struck_rows = [row for row in rows if row["crash_type"] != "Frontal"]
+        if len(struck_rows) != 1:
+            continue
+        one = struck_rows[0]
+        two = rows[1] if rows[0] is one else rows[0]
+        turned = float(two["angle_deg"]) - float(one["angle_deg"]) - INWARDS_DEG[one["crash_type"]]
+        turned -= 360.0 * round(turned / 360.0)
+        lines.append(",".join([case, one["crash_type"].replace("-side", "").lower(), one["speed_m_s"],
+                               two["speed_m_s"], f"{turned:g}"]
+                              + [row[column] for column in ("mass_kg", "delta_v_m_s") for row in (one, two)]))
+    return STRUCK_SOURCE + "\n".join(lines) + "\n"
+
+
 def axes(references):
     """Tests that both small-overlap tables hold: amount and direction of the change of velocity at
     separation and by accelerometers after 250 ms, in m/s and degrees from the x axis."""
@@ -152,7 +192,8 @@ def main():
         print(axes(arguments.references), end="")
         return
     for name, make in (("quantiles.csv", quantiles), ("nhtsa_oblique.csv", oblique),
-                       ("reconstructed.csv", reconstructed)):
+                       ("reconstructed.csv", reconstructed),
+                       ("reconstructed_struck.csv", reconstructed_struck)):
         (arguments.output / name).write_text(make(arguments.references), encoding="utf-8")
 
 

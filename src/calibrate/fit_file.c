@@ -1,159 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/fit_file.h"
 
-#include "calibrate/fit_pulses.h"
-#include "calibrate/fit_targets.h"
+#include "calibrate/fit_schema.h"
+#include "core/array.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/output_files.h"
 #include "core/safe_text.h"
-#include "core/yaml_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef struct yaml_unknown {
-    char *name;
-    char *min;
-    char *max;
-} yaml_unknown;
-
-typedef struct yaml_range {
-    char *speed_min_km_h;
-    char *speed_max_km_h;
-    char *offset_max_mm;
-    char *angle_max_deg;
-    char *reason;
-} yaml_range;
-
-typedef struct yaml_bounds {
-    char *min;
-    char *max;
-} yaml_bounds;
-
-typedef struct yaml_plausible {
-    char *speed_km_h;
-    char *offset_mm;
-    char *angle_deg;
-    yaml_bounds *t_v0_ms;
-    yaml_bounds *crush_mm;
-    yaml_bounds *peak_g;
-    yaml_bounds *rebound_m_s;
-    char *source;
-} yaml_plausible;
-
-typedef struct yaml_fit {
-    char *fit;
-    char *description;
-    char *base;
-    char *objective;
-    char *reference;
-    cp_yaml_pulse *pulses;
-    unsigned pulses_count;
-    yaml_range *calibrated;
-    char *output;
-    char *algorithm;
-    char *seed;
-    char *population;
-    char *generations;
-    char *global_time_step_s;
-    char *local_time_step_s;
-    char *local_evaluations;
-    char *starts;
-    char *offspring;
-    char *slope_evaluations;
-    char *soft_g;
-    char *prior_g;
-    char *folds;
-    char *neighbour_folds;
-    char **leave_out;
-    unsigned leave_out_count;
-    yaml_plausible *plausible;
-    cp_yaml_target *targets;
-    unsigned targets_count;
-    char *ensemble;
-    char *ensemble_within_1;
-    char *threads;
-    yaml_unknown *unknowns;
-    unsigned unknowns_count;
-} yaml_fit;
-
-#define TEXT(key, type)                                                                            \
-    CYAML_FIELD_STRING_PTR(#key, CYAML_FLAG_POINTER, type, key, 0, CYAML_UNLIMITED)
-#define OPTIONAL_TEXT(key, type)                                                                   \
-    CYAML_FIELD_STRING_PTR(#key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, type, key, 0,           \
-                           CYAML_UNLIMITED)
-
-static const cyaml_schema_field_t UNKNOWN_FIELDS[] = {
-    TEXT(name, yaml_unknown), TEXT(min, yaml_unknown), TEXT(max, yaml_unknown), CYAML_FIELD_END};
-static const cyaml_schema_value_t UNKNOWN_VALUE = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, yaml_unknown, UNKNOWN_FIELDS)};
-
-static const cyaml_schema_field_t RANGE_FIELDS[] = {
-    TEXT(speed_min_km_h, yaml_range), TEXT(speed_max_km_h, yaml_range),
-    TEXT(offset_max_mm, yaml_range),  TEXT(angle_max_deg, yaml_range),
-    TEXT(reason, yaml_range),         CYAML_FIELD_END};
-
-static const cyaml_schema_field_t BOUNDS_FIELDS[] = {TEXT(min, yaml_bounds), TEXT(max, yaml_bounds),
-                                                     CYAML_FIELD_END};
-
-#define OPTIONAL_BOUNDS(key)                                                                       \
-    CYAML_FIELD_MAPPING_PTR(#key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_plausible, key,   \
-                            BOUNDS_FIELDS)
-
-static const cyaml_schema_field_t PLAUSIBLE_FIELDS[] = {TEXT(speed_km_h, yaml_plausible),
-                                                        OPTIONAL_TEXT(offset_mm, yaml_plausible),
-                                                        OPTIONAL_TEXT(angle_deg, yaml_plausible),
-                                                        OPTIONAL_BOUNDS(t_v0_ms),
-                                                        OPTIONAL_BOUNDS(crush_mm),
-                                                        OPTIONAL_BOUNDS(peak_g),
-                                                        OPTIONAL_BOUNDS(rebound_m_s),
-                                                        TEXT(source, yaml_plausible),
-                                                        CYAML_FIELD_END};
-
-static const cyaml_schema_value_t WORD_VALUE = {
-    CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char, 0, CYAML_UNLIMITED)};
-
-static const cyaml_schema_field_t FIT_FIELDS[] = {
-    TEXT(fit, yaml_fit),
-    OPTIONAL_TEXT(description, yaml_fit),
-    TEXT(base, yaml_fit),
-    OPTIONAL_TEXT(objective, yaml_fit),
-    OPTIONAL_TEXT(reference, yaml_fit),
-    CYAML_FIELD_SEQUENCE("pulses", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit, pulses,
-                         &CP_YAML_PULSE_VALUE, 1, CYAML_UNLIMITED),
-    CYAML_FIELD_MAPPING_PTR("calibrated", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit,
-                            calibrated, RANGE_FIELDS),
-    TEXT(output, yaml_fit),
-    OPTIONAL_TEXT(algorithm, yaml_fit),
-    TEXT(seed, yaml_fit),
-    OPTIONAL_TEXT(population, yaml_fit),
-    OPTIONAL_TEXT(generations, yaml_fit),
-    OPTIONAL_TEXT(global_time_step_s, yaml_fit),
-    OPTIONAL_TEXT(local_time_step_s, yaml_fit),
-    OPTIONAL_TEXT(local_evaluations, yaml_fit),
-    OPTIONAL_TEXT(starts, yaml_fit),
-    OPTIONAL_TEXT(offspring, yaml_fit),
-    OPTIONAL_TEXT(slope_evaluations, yaml_fit),
-    OPTIONAL_TEXT(soft_g, yaml_fit),
-    OPTIONAL_TEXT(prior_g, yaml_fit),
-    OPTIONAL_TEXT(folds, yaml_fit),
-    OPTIONAL_TEXT(neighbour_folds, yaml_fit),
-    CYAML_FIELD_SEQUENCE("leave_out", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit, leave_out,
-                         &WORD_VALUE, 1, 3),
-    CYAML_FIELD_MAPPING_PTR("plausible", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit,
-                            plausible, PLAUSIBLE_FIELDS),
-    CYAML_FIELD_SEQUENCE("targets", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, yaml_fit, targets,
-                         &CP_YAML_TARGET_VALUE, 1, CP_TARGETS_MAX),
-    OPTIONAL_TEXT(ensemble, yaml_fit),
-    OPTIONAL_TEXT(ensemble_within_1, yaml_fit),
-    OPTIONAL_TEXT(threads, yaml_fit),
-    CYAML_FIELD_SEQUENCE("unknowns", CYAML_FLAG_POINTER, yaml_fit, unknowns, &UNKNOWN_VALUE, 1,
-                         CP_UNKNOWNS_MAX),
-    CYAML_FIELD_END};
-static const cyaml_schema_value_t FIT_VALUE = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, yaml_fit, FIT_FIELDS)};
 
 // A whole number with a default.
 static cp_status read_count(const cp_yaml_file *file, const char *key, const char *text,
@@ -168,7 +25,7 @@ static cp_status read_count(const cp_yaml_file *file, const char *key, const cha
     return status;
 }
 
-static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+static cp_status read_numbers(const cp_yaml_file *file, const cp_yaml_fit *yaml, cp_fit *fit,
                               cp_error *error)
 {
     size_t seed = 0, threads = 1;
@@ -222,11 +79,6 @@ static cp_status read_numbers(const cp_yaml_file *file, const yaml_fit *yaml, cp
     return status;
 }
 
-bool cp_fit_draws_starts(const cp_fit *fit)
-{
-    return fit->generations == 0 && fit->starts > 1;
-}
-
 // An eighth of the evaluations must find the slopes once and take a step; children have two
 // parents.
 static cp_status check_drawn_starts(const cp_yaml_file *file, const cp_fit *fit, cp_error *error)
@@ -245,7 +97,7 @@ static cp_status check_drawn_starts(const cp_yaml_file *file, const cp_fit *fit,
 }
 
 // Variables of which one level at a time is left out.
-static cp_status read_leave_out(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+static cp_status read_leave_out(const cp_yaml_file *file, const cp_yaml_fit *yaml, cp_fit *fit,
                                 cp_error *error)
 {
     static const char *const WORD[4] = {NULL, "speed", "offset", "angle"};
@@ -266,7 +118,7 @@ static cp_status read_leave_out(const cp_yaml_file *file, const yaml_fit *yaml, 
 }
 
 // Bounds of one mark of the pulse.
-static cp_status read_mark(const cp_yaml_file *file, int mark, const yaml_bounds *yaml,
+static cp_status read_mark(const cp_yaml_file *file, int mark, const cp_yaml_bounds *yaml,
                            cp_plausibility *guard, cp_error *error)
 {
     if (yaml == NULL)
@@ -287,8 +139,8 @@ static cp_status read_mark(const cp_yaml_file *file, int mark, const yaml_bounds
     return status;
 }
 
-static cp_status read_plausible(const cp_yaml_file *file, const yaml_plausible *yaml, cp_fit *fit,
-                                cp_error *error)
+static cp_status read_plausible(const cp_yaml_file *file, const cp_yaml_plausible *yaml,
+                                cp_fit *fit, cp_error *error)
 {
     if (yaml == NULL)
         return CP_OK;
@@ -304,10 +156,10 @@ static cp_status read_plausible(const cp_yaml_file *file, const yaml_plausible *
     if (status == CP_OK)
         status = cp_yaml_number(file, "plausible.angle_deg", yaml->angle_deg, -90, 90,
                                 &guard->angle_deg, error);
-    const yaml_bounds *bounds[CP_MARK_COUNT] = {[CP_MARK_T_V0] = yaml->t_v0_ms,
-                                                [CP_MARK_CRUSH] = yaml->crush_mm,
-                                                [CP_MARK_PEAK] = yaml->peak_g,
-                                                [CP_MARK_REBOUND] = yaml->rebound_m_s};
+    const cp_yaml_bounds *bounds[CP_MARK_COUNT] = {[CP_MARK_T_V0] = yaml->t_v0_ms,
+                                                   [CP_MARK_CRUSH] = yaml->crush_mm,
+                                                   [CP_MARK_PEAK] = yaml->peak_g,
+                                                   [CP_MARK_REBOUND] = yaml->rebound_m_s};
     for (int mark = 0; status == CP_OK && mark < CP_MARK_COUNT; mark++)
         status = read_mark(file, mark, bounds[mark], guard, error);
     if (status == CP_OK &&
@@ -319,7 +171,7 @@ static cp_status read_plausible(const cp_yaml_file *file, const yaml_plausible *
     return status;
 }
 
-static cp_status read_unknown(const cp_yaml_file *file, const yaml_unknown *yaml, size_t row,
+static cp_status read_unknown(const cp_yaml_file *file, const cp_yaml_unknown *yaml, size_t row,
                               cp_fit *fit, cp_error *error)
 {
     char key[64];
@@ -352,7 +204,7 @@ static cp_status read_unknown(const cp_yaml_file *file, const yaml_unknown *yaml
     return status;
 }
 
-static cp_status read_texts(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+static cp_status read_texts(const cp_yaml_file *file, const cp_yaml_fit *yaml, cp_fit *fit,
                             cp_error *error)
 {
     if (yaml->fit[0] == '\0' || strlen(yaml->fit) >= sizeof fit->name)
@@ -378,7 +230,7 @@ static cp_status read_texts(const cp_yaml_file *file, const yaml_fit *yaml, cp_f
 }
 
 // What is made small, and that the file names what that needs and nothing it does not.
-static cp_status read_objective(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+static cp_status read_objective(const cp_yaml_file *file, const cp_yaml_fit *yaml, cp_fit *fit,
                                 cp_error *error)
 {
     const char *objective = yaml->objective != NULL ? yaml->objective : "olc";
@@ -406,7 +258,7 @@ static cp_status read_objective(const cp_yaml_file *file, const yaml_fit *yaml, 
     return CP_OK;
 }
 
-static cp_status read_range(const cp_yaml_file *file, const yaml_range *yaml, cp_fit *fit,
+static cp_status read_range(const cp_yaml_file *file, const cp_yaml_range *yaml, cp_fit *fit,
                             cp_error *error)
 {
     if (yaml == NULL)
@@ -434,7 +286,7 @@ static cp_status read_range(const cp_yaml_file *file, const yaml_range *yaml, cp
 }
 
 // The table of OLC values, as seen from the fit file's folder.
-static cp_status load_reference(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+static cp_status load_reference(const cp_yaml_file *file, const cp_yaml_fit *yaml, cp_fit *fit,
                                 cp_error *error)
 {
     if (yaml->reference == NULL)
@@ -463,18 +315,14 @@ static cp_status check_folds(const cp_yaml_file *file, const char *key, size_t f
 // Remember a file that is read; name: as the fit file has it.
 static cp_status add_input(const cp_yaml_file *file, const char *name, cp_fit *fit, cp_error *error)
 {
-    char **larger = realloc(fit->input_path, (fit->input_count + 1) * sizeof *larger);
-    if (larger == NULL)
+    char **path = cp_array_add(fit->input_path, fit->input_count);
+    if (path == NULL)
         return cp_fail_memory(error, file->path);
-    fit->input_path = larger;
-    larger[fit->input_count] = cp_file_beside(file->path, name);
-    if (larger[fit->input_count] == NULL)
-        return cp_fail_memory(error, file->path);
-    fit->input_count++;
-    return CP_OK;
+    *path = cp_file_beside(file->path, name);
+    return *path != NULL ? CP_OK : cp_fail_memory(error, file->path);
 }
 
-static cp_status list_inputs(const cp_yaml_file *file, const yaml_fit *yaml, cp_fit *fit,
+static cp_status list_inputs(const cp_yaml_file *file, const cp_yaml_fit *yaml, cp_fit *fit,
                              cp_error *error)
 {
     // cp_file_beside takes an absolute path as it is; the fit file's own is seen from here.
@@ -494,7 +342,7 @@ static cp_status list_inputs(const cp_yaml_file *file, const yaml_fit *yaml, cp_
 }
 
 // Where the file's own output: leads, or the output_path that was given instead.
-static cp_status read_output(const cp_yaml_file *file, const yaml_fit *yaml,
+static cp_status read_output(const cp_yaml_file *file, const cp_yaml_fit *yaml,
                              const char *output_path, cp_fit *fit, cp_error *error)
 {
     cp_error own = {0};
@@ -531,7 +379,7 @@ static cp_status check_outputs(const cp_fit *fit, cp_error *error)
 }
 
 // The files a fit file names, as seen from its folder.
-static cp_status load_named_files(const cp_yaml_file *file, const yaml_fit *yaml,
+static cp_status load_named_files(const cp_yaml_file *file, const cp_yaml_fit *yaml,
                                   const char *output_path, cp_fit *fit, cp_error *error)
 {
     cp_status status = list_inputs(file, yaml, fit, error);
@@ -552,10 +400,10 @@ cp_status cp_fit_load(const char *path, const char *output_path, cp_fit *fit, cp
 {
     *fit = (cp_fit){0};
     cp_yaml_file file = {0};
-    cp_status status = cp_yaml_load(path, &FIT_VALUE, &file, error);
+    cp_status status = cp_yaml_load(path, &CP_YAML_FIT_VALUE, &file, error);
     if (status != CP_OK)
         return status;
-    const yaml_fit *yaml = (const yaml_fit *)file.data;
+    const cp_yaml_fit *yaml = (const cp_yaml_fit *)file.data;
     status = read_texts(&file, yaml, fit, error);
     if (status == CP_OK)
         status = read_objective(&file, yaml, fit, error);
@@ -586,18 +434,4 @@ cp_status cp_fit_load(const char *path, const char *output_path, cp_fit *fit, cp
     if (status != CP_OK)
         cp_fit_destroy(fit);
     return status;
-}
-
-void cp_fit_destroy(cp_fit *fit)
-{
-    cp_reference_destroy(&fit->reference);
-    for (size_t k = 0; k < fit->pulse_count; k++)
-        cp_reference_pulse_destroy(&fit->pulses[k]);
-    free(fit->pulses);
-    free(fit->reference_path);
-    free(fit->output_path);
-    for (size_t k = 0; k < fit->input_count; k++)
-        free(fit->input_path[k]);
-    free(fit->input_path);
-    *fit = (cp_fit){0};
 }

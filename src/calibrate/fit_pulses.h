@@ -2,7 +2,7 @@
 #ifndef CALIBRATE_FIT_PULSES_H
 #define CALIBRATE_FIT_PULSES_H
 
-#include "calibrate/fit_file.h"
+#include "calibrate/fit.h"
 #include "core/yaml_file.h"
 
 /* The section "pulses" of a fit file. */

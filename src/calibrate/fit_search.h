@@ -2,7 +2,7 @@
 #ifndef CALIBRATE_FIT_SEARCH_H
 #define CALIBRATE_FIT_SEARCH_H
 
-#include "calibrate/fit_file.h"
+#include "calibrate/fit.h"
 #include "calibrate/pulse_objective.h"
 
 #include <stdbool.h>

@@ -2,7 +2,7 @@
 #ifndef CALIBRATE_FIT_TARGETS_H
 #define CALIBRATE_FIT_TARGETS_H
 
-#include "calibrate/fit_file.h"
+#include "calibrate/fit.h"
 #include "core/yaml_file.h"
 
 /* The section `targets` of a fit file (db/vehicles/README.md describes it). */

@@ -144,6 +144,9 @@ void cp_fit_write_vehicle(FILE *file, const cp_fit *fit, const cp_calibration *c
         const cp_unknown *unknown = unknown_of(fit, parameter->name);
         fprintf(file, "  - {name: %s, value: %.9g, unit: %s, ", parameter->name,
                 cp_vehicle_model_get(model, k), parameter->unit);
+        if (model->scatter_1[k] > 0.0)
+            fprintf(file, "min: %.9g, max: %.9g, scatter: %.9g, ", model->smallest[k],
+                    model->largest[k], model->scatter_1[k]);
         if (unknown != NULL)
             fprintf(file, "source: fitted within %g to %g}\n", unknown->min, unknown->max);
         else

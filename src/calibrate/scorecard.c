@@ -2,7 +2,7 @@
 #include "calibrate/scorecard.h"
 
 #include "calibrate/parallel.h"
-#include "calibrate/suite_case.h"
+#include "calibrate/suite_cases.h"
 #include "core/csv_table.h"
 #include "crash/validity.h"
 
@@ -258,10 +258,10 @@ static void look_at(const maker *make, const task *work, size_t offset,
 }
 
 // One simulation: its value. Several: their median and range.
-static void keep_values(const maker *make, const task *work, double *values)
+static void keep_values(const maker *make, const task *work, size_t count, double *values)
 {
     const block *of = work->of;
-    size_t count = of->cases.row[work->index].offset_count;
+    bool is_range = of->cases.row[work->index].offset_count > 1;
     for (size_t c = 0, place = 0; c < of->class->comparison_count; c++) {
         cp_scorecard_row *target = &make->scorecard->row[of->first_row + c];
         size_t each = target->case_count / of->cases.count;
@@ -270,7 +270,7 @@ static void keep_values(const maker *make, const task *work, double *values)
             double *found = values + place * CP_SUITE_OFFSETS_MAX;
             gsl_sort(found, 1, count);
             one->model = gsl_stats_quantile_from_sorted_data(found, 1, count, 0.5);
-            one->is_range = count > 1;
+            one->is_range = is_range;
             if (one->is_range) {
                 one->low = found[0];
                 one->high = found[count - 1];
@@ -295,18 +295,20 @@ static cp_status run_task(void *context, size_t k)
     double *values = calloc(values_of(make, work->of) * CP_SUITE_OFFSETS_MAX, sizeof *values);
     cp_status status = values != NULL ? CP_OK : CP_NO_MEMORY;
     cp_error error = {0};
+    size_t met = 0;
     for (size_t offset = 0; status == CP_OK && offset < row->offset_count; offset++) {
         cp_crash_result result, wall;
         status = cp_suite_case_simulate(row, offset, &result, &wall, &error);
-        if (status == CP_OK && !result.touched)
-            status = cp_fail(&error, CP_RUN_FAILED, CP_NO_CONTACT_TEXT);
-        if (status == CP_OK)
-            look_at(make, work, offset, &result, &wall, values);
+        if (status == CP_OK && result.touched)
+            look_at(make, work, met++, &result, &wall, values);
         cp_crash_result_destroy(&result);
         cp_crash_result_destroy(&wall);
     }
+    // Where the two would have passed each other the test was not; everywhere it cannot be.
+    if (status == CP_OK && met == 0)
+        status = cp_fail(&error, CP_RUN_FAILED, CP_NO_CONTACT_TEXT);
     if (status == CP_OK)
-        keep_values(make, work, values);
+        keep_values(make, work, met, values);
     else
         snprintf(work->problem, sizeof work->problem, "%.60s: %.130s", row->label, error.text);
     free(values);

@@ -2,7 +2,7 @@
 #ifndef CALIBRATE_SCORECARD_H
 #define CALIBRATE_SCORECARD_H
 
-#include "calibrate/suite_file.h"
+#include "calibrate/suite.h"
 #include "crash/vehicle_model.h"
 
 /* How far vehicle models lie from a suite of crash tests: one row a class, vehicle and quantity. */

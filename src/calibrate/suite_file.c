@@ -1,171 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/suite_file.h"
 
+#include "calibrate/suite_schema.h"
 #include "core/file.h"
-#include "core/yaml_file.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-// ---- what the file may hold --------------------------------------------------------------------
-
-typedef struct yaml_bar {
-    char *inside_1;
-    char *mean_abs;
-    char *median_abs;
-    char *p90_abs;
-    char *max_abs;
-    char *max_step;
-    char *falling;
-    char *last_is_highest;
-} yaml_bar;
-
-// A list as libcyaml fills it.
-#define LIST(name)                                                                                 \
-    char **name;                                                                                   \
-    unsigned name##_count
-
-typedef struct yaml_comparison {
-    char *quantity;
-    LIST(times_ms);
-    char *population;
-    LIST(reference);
-    LIST(low);
-    LIST(high);
-    char *relative;
-    char *car;
-    yaml_bar *bar;
-} yaml_comparison;
-
-typedef struct yaml_barrier {
-    char *width_m;
-    char *depth_m;
-    char *corner_radius_m;
-} yaml_barrier;
-
-typedef struct yaml_table {
-    char *form;
-    char *file;
-    char *references_file;
-    LIST(rows_with);
-} yaml_table;
-
-typedef struct yaml_sweep {
-    char *from_1;
-    char *to_1;
-    char *count;
-} yaml_sweep;
-
-typedef struct yaml_class {
-    char *name;
-    char *title;
-    char *note;
-    LIST(vehicles);
-    yaml_table *table;
-    LIST(speeds_km_h);
-    LIST(opponent_speeds_km_h);
-    LIST(overlaps_1);
-    yaml_sweep *overlap_sweep;
-    LIST(sides);
-    LIST(angles_deg);
-    yaml_barrier *barrier;
-    LIST(against);
-    yaml_comparison *compare;
-    unsigned compare_count;
-} yaml_class;
-
-typedef struct yaml_suite {
-    char *suite;
-    char *description;
-    char *quantiles;
-    LIST(vehicles);
-    yaml_class *classes;
-    unsigned classes_count;
-} yaml_suite;
-
-#define TEXT(key, type)                                                                            \
-    CYAML_FIELD_STRING_PTR(#key, CYAML_FLAG_POINTER, type, key, 0, CYAML_UNLIMITED)
-#define OPTIONAL_TEXT(key, type)                                                                   \
-    CYAML_FIELD_STRING_PTR(#key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, type, key, 0,           \
-                           CYAML_UNLIMITED)
-#define OPTIONAL_LIST(key, type)                                                                   \
-    CYAML_FIELD_SEQUENCE(#key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, type, key, &WORD_VALUE,   \
-                         1, CP_SUITE_LIST_MAX)
-#define OPTIONAL_MAPPING(key, type, fields)                                                        \
-    CYAML_FIELD_MAPPING_PTR(#key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, type, key, fields)
-
-static const cyaml_schema_value_t WORD_VALUE = {
-    CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char, 0, CYAML_UNLIMITED)};
-
-static const cyaml_schema_field_t BAR_FIELDS[] = {OPTIONAL_TEXT(inside_1, yaml_bar),
-                                                  OPTIONAL_TEXT(mean_abs, yaml_bar),
-                                                  OPTIONAL_TEXT(median_abs, yaml_bar),
-                                                  OPTIONAL_TEXT(p90_abs, yaml_bar),
-                                                  OPTIONAL_TEXT(max_abs, yaml_bar),
-                                                  OPTIONAL_TEXT(max_step, yaml_bar),
-                                                  OPTIONAL_TEXT(falling, yaml_bar),
-                                                  OPTIONAL_TEXT(last_is_highest, yaml_bar),
-                                                  CYAML_FIELD_END};
-
-static const cyaml_schema_field_t COMPARISON_FIELDS[] = {
-    TEXT(quantity, yaml_comparison),
-    OPTIONAL_LIST(times_ms, yaml_comparison),
-    OPTIONAL_TEXT(population, yaml_comparison),
-    OPTIONAL_LIST(reference, yaml_comparison),
-    OPTIONAL_LIST(low, yaml_comparison),
-    OPTIONAL_LIST(high, yaml_comparison),
-    OPTIONAL_TEXT(relative, yaml_comparison),
-    OPTIONAL_TEXT(car, yaml_comparison),
-    OPTIONAL_MAPPING(bar, yaml_comparison, BAR_FIELDS),
-    CYAML_FIELD_END};
-static const cyaml_schema_value_t COMPARISON_VALUE = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, yaml_comparison, COMPARISON_FIELDS)};
-
-static const cyaml_schema_field_t BARRIER_FIELDS[] = {
-    TEXT(width_m, yaml_barrier), TEXT(depth_m, yaml_barrier), TEXT(corner_radius_m, yaml_barrier),
-    CYAML_FIELD_END};
-
-static const cyaml_schema_field_t TABLE_FIELDS[] = {
-    TEXT(form, yaml_table), OPTIONAL_TEXT(file, yaml_table),
-    OPTIONAL_TEXT(references_file, yaml_table), OPTIONAL_LIST(rows_with, yaml_table),
-    CYAML_FIELD_END};
-
-static const cyaml_schema_field_t SWEEP_FIELDS[] = {
-    TEXT(from_1, yaml_sweep), TEXT(to_1, yaml_sweep), TEXT(count, yaml_sweep), CYAML_FIELD_END};
-
-static const cyaml_schema_field_t CLASS_FIELDS[] = {
-    CYAML_FIELD_STRING_PTR("class", CYAML_FLAG_POINTER, yaml_class, name, 0, CYAML_UNLIMITED),
-    TEXT(title, yaml_class),
-    OPTIONAL_TEXT(note, yaml_class),
-    OPTIONAL_LIST(vehicles, yaml_class),
-    OPTIONAL_MAPPING(table, yaml_class, TABLE_FIELDS),
-    OPTIONAL_LIST(speeds_km_h, yaml_class),
-    OPTIONAL_LIST(opponent_speeds_km_h, yaml_class),
-    OPTIONAL_LIST(overlaps_1, yaml_class),
-    OPTIONAL_MAPPING(overlap_sweep, yaml_class, SWEEP_FIELDS),
-    OPTIONAL_LIST(sides, yaml_class),
-    OPTIONAL_LIST(angles_deg, yaml_class),
-    OPTIONAL_MAPPING(barrier, yaml_class, BARRIER_FIELDS),
-    OPTIONAL_LIST(against, yaml_class),
-    CYAML_FIELD_SEQUENCE("compare", CYAML_FLAG_POINTER, yaml_class, compare, &COMPARISON_VALUE, 1,
-                         CP_SUITE_COMPARISONS_MAX),
-    CYAML_FIELD_END};
-static const cyaml_schema_value_t CLASS_VALUE = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, yaml_class, CLASS_FIELDS)};
-
-static const cyaml_schema_field_t SUITE_FIELDS[] = {
-    TEXT(suite, yaml_suite),
-    OPTIONAL_TEXT(description, yaml_suite),
-    OPTIONAL_TEXT(quantiles, yaml_suite),
-    CYAML_FIELD_SEQUENCE("vehicles", CYAML_FLAG_POINTER, yaml_suite, vehicles, &WORD_VALUE, 1,
-                         CP_SUITE_LIST_MAX),
-    CYAML_FIELD_SEQUENCE("classes", CYAML_FLAG_POINTER, yaml_suite, classes, &CLASS_VALUE, 1,
-                         CP_SUITE_LIST_MAX),
-    CYAML_FIELD_END};
-static const cyaml_schema_value_t SUITE_VALUE = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, yaml_suite, SUITE_FIELDS)};
 
 // ---- single values -----------------------------------------------------------------------------
 
@@ -254,9 +96,9 @@ static cp_status copy_texts(const place *at, char *const *texts, unsigned count,
 
 // ---- comparisons -------------------------------------------------------------------------------
 
-static cp_status read_bar(const place *at, const yaml_bar *yaml, cp_suite_bar *bar)
+static cp_status read_bar(const place *at, const cp_suite_yaml_bar *yaml, cp_suite_bar *bar)
 {
-    static const yaml_bar NONE = {0};
+    static const cp_suite_yaml_bar NONE = {0};
     *bar = (cp_suite_bar){.inside_1 = NAN,
                           .mean_abs = NAN,
                           .median_abs = NAN,
@@ -289,7 +131,7 @@ static cp_status read_bar(const place *at, const yaml_bar *yaml, cp_suite_bar *b
 }
 
 // That what the bar is about is there.
-static cp_status check_comparison(const place *at, const yaml_comparison *yaml,
+static cp_status check_comparison(const place *at, const cp_suite_yaml_comparison *yaml,
                                   const cp_suite_comparison *comparison)
 {
     const cp_suite_bar *bar = &comparison->bar;
@@ -309,7 +151,7 @@ static cp_status check_comparison(const place *at, const yaml_comparison *yaml,
     return CP_OK;
 }
 
-static cp_status read_comparison(const place *at, const yaml_comparison *yaml,
+static cp_status read_comparison(const place *at, const cp_suite_yaml_comparison *yaml,
                                  cp_suite_comparison *comparison)
 {
     comparison->quantity = cp_suite_quantity_find(yaml->quantity);
@@ -342,7 +184,7 @@ static cp_status read_comparison(const place *at, const yaml_comparison *yaml,
 
 // ---- classes -----------------------------------------------------------------------------------
 
-static cp_status read_table(const place *at, const yaml_table *yaml, cp_suite_class *class)
+static cp_status read_table(const place *at, const cp_suite_yaml_table *yaml, cp_suite_class *class)
 {
     static const char *const FORM[] = {
 #define FORM_TEXT(name, text) text,
@@ -356,7 +198,8 @@ static cp_status read_table(const place *at, const yaml_table *yaml, cp_suite_cl
     while (form < CP_SUITE_FORM_COUNT && strcmp(yaml->form, FORM[form]) != 0)
         form++;
     if (form == CP_SUITE_FORM_COUNT)
-        return fail_at(at, "table.form", "must be olc, separation, oblique or reconstructed",
+        return fail_at(at, "table.form",
+                       "must be olc, separation, oblique, reconstructed or reconstructed_struck",
                        yaml->form);
     if ((yaml->file == NULL) == (yaml->references_file == NULL))
         return fail_at(at, "table", "needs either file or references_file", NULL);
@@ -366,13 +209,17 @@ static cp_status read_table(const place *at, const yaml_table *yaml, cp_suite_cl
                                             : cp_file_beside(at->file->path, yaml->file);
     if (class->table_path == NULL)
         return cp_fail_memory(at->error, at->file->path);
-    if ((form == CP_SUITE_SEPARATION) != (yaml->rows_with_count > 0))
+    bool chosen = form == CP_SUITE_SEPARATION || form == CP_SUITE_STRUCK;
+    if (chosen != (yaml->rows_with_count > 0))
         return fail_at(at, "table.rows_with",
-                       "names the barriers of form separation, and of no other", NULL);
+                       "names the barriers of form separation or the sides of form "
+                       "reconstructed_struck, and goes with no other",
+                       NULL);
     return copy_texts(at, yaml->rows_with, yaml->rows_with_count, &class->rows_with);
 }
 
-static cp_status read_barrier(const place *at, const yaml_barrier *yaml, cp_suite_class *class)
+static cp_status read_barrier(const place *at, const cp_suite_yaml_barrier *yaml,
+                              cp_suite_class *class)
 {
     class->has_barrier = yaml != NULL;
     class->barrier = cp_barrier_default();
@@ -384,36 +231,78 @@ static cp_status read_barrier(const place *at, const yaml_barrier *yaml, cp_suit
     if (status == CP_OK)
         status = read_number(at, "barrier.depth_m", yaml->depth_m, 0.2, 20, &barrier->depth_m);
     double largest_m = 0.5 * fmin(barrier->width_m, barrier->depth_m);
-    return status == CP_OK ? read_number(at, "barrier.corner_radius_m", yaml->corner_radius_m, 0,
-                                         largest_m, &barrier->corner_radius_m)
-                           : status;
+    const struct {
+        const char *key;
+        const char *text;
+        double smallest;
+        double largest;
+        double *value;
+    } fields[] = {
+        {"barrier.corner_radius_m", yaml->corner_radius_m, 0.0, largest_m,
+         &barrier->corner_radius_m},
+        {"barrier.mass_kg", yaml->mass_kg, 0.0, 1e5, &barrier->mass_kg},
+        {"barrier.yaw_inertia_kg_m2", yaml->yaw_inertia_kg_m2, 50.0, 1e6,
+         &barrier->yaw_inertia_kg_m2},
+        {"barrier.face_m", yaml->face_m, 0.0, 2.0, &barrier->face_m},
+        {"barrier.face_kn", yaml->face_kn, 5.0, 5000.0, &barrier->face_kn},
+        {"barrier.face_bumper_m", yaml->face_bumper_m, 0.0, 1.0, &barrier->face_bumper_m},
+        {"barrier.face_bumper_kn", yaml->face_bumper_kn, 5.0, 5000.0, &barrier->face_bumper_kn}};
+    for (size_t k = 0; status == CP_OK && k < sizeof fields / sizeof *fields; k++)
+        status = read_number(at, fields[k].key, fields[k].text, fields[k].smallest,
+                             fields[k].largest, fields[k].value);
+    cp_error problem = {0};
+    if (status == CP_OK && cp_barrier_validate(barrier, &problem) != CP_OK)
+        status = fail_at(at, "barrier", problem.text, NULL);
+    return status;
 }
 
-static cp_status read_sweep(const place *at, const yaml_sweep *yaml, cp_suite_class *class)
+// Evenly from one value to another.
+static cp_status spread(const place *at, const char *key, const char *count_text, double from,
+                        double to, cp_suite_numbers *numbers)
 {
-    double from_1 = 0.0, to_1 = 0.0, count = 0.0;
-    cp_status status = read_number(at, "overlap_sweep.from_1", yaml->from_1, 0.001, 1.0, &from_1);
-    if (status == CP_OK)
-        status = read_number(at, "overlap_sweep.to_1", yaml->to_1, 0.001, 1.0, &to_1);
-    if (status == CP_OK)
-        status = read_number(at, "overlap_sweep.count", yaml->count, 2, CP_SUITE_LIST_MAX, &count);
+    char path[64];
+    double count = 0.0;
+    snprintf(path, sizeof path, "%s.count", key);
+    cp_status status = read_number(at, path, count_text, 2, CP_SUITE_LIST_MAX, &count);
     if (status == CP_OK && count != floor(count))
-        status = fail_at(at, "overlap_sweep.count", "must be a whole number", yaml->count);
-    if (status == CP_OK && class->overlaps_1.count > 0)
-        status = fail_at(at, "overlap_sweep", "does not go with overlaps_1", NULL);
+        status = fail_at(at, path, "must be a whole number", count_text);
+    if (status == CP_OK && numbers->count > 0)
+        status = fail_at(at, key, "does not go with a list of the same", NULL);
     if (status != CP_OK)
         return status;
-    class->overlaps_1.value = calloc((size_t)count, sizeof *class->overlaps_1.value);
-    if (class->overlaps_1.value == NULL)
+    numbers->value = calloc((size_t)count, sizeof *numbers->value);
+    if (numbers->value == NULL)
         return cp_fail_memory(at->error, at->file->path);
-    class->overlaps_1.count = (size_t)count;
-    for (size_t k = 0; k < class->overlaps_1.count; k++)
-        class->overlaps_1.value[k] = from_1 + (to_1 - from_1) * (double)k / (count - 1.0);
+    numbers->count = (size_t)count;
+    for (size_t k = 0; k < numbers->count; k++)
+        numbers->value[k] = from + (to - from) * (double)k / (count - 1.0);
     return CP_OK;
 }
 
+static cp_status read_sweep(const place *at, const cp_suite_yaml_sweep *yaml, cp_suite_class *class)
+{
+    double from_1 = 0.0, to_1 = 0.0;
+    cp_status status = read_number(at, "overlap_sweep.from_1", yaml->from_1, 0.001, 1.0, &from_1);
+    if (status == CP_OK)
+        status = read_number(at, "overlap_sweep.to_1", yaml->to_1, 0.001, 1.0, &to_1);
+    return status == CP_OK
+               ? spread(at, "overlap_sweep", yaml->count, from_1, to_1, &class->overlaps_1)
+               : status;
+}
+
+static cp_status read_places(const place *at, const cp_suite_yaml_places *yaml,
+                             cp_suite_class *class)
+{
+    double from_mm = 0.0, to_mm = 0.0;
+    cp_status status = read_number(at, "at_sweep.from_mm", yaml->from_mm, -8000, 8000, &from_mm);
+    if (status == CP_OK)
+        status = read_number(at, "at_sweep.to_mm", yaml->to_mm, -8000, 8000, &to_mm);
+    return status == CP_OK ? spread(at, "at_sweep", yaml->count, from_mm, to_mm, &class->at_mm)
+                           : status;
+}
+
 // "left" and "right" into +1 and -1.
-static cp_status read_sides(const place *at, const yaml_class *yaml, cp_suite_class *class)
+static cp_status read_sides(const place *at, const cp_suite_yaml_class *yaml, cp_suite_class *class)
 {
     class->sides_1.value = calloc(yaml->sides_count + 1, sizeof *class->sides_1.value);
     if (class->sides_1.value == NULL)
@@ -429,7 +318,44 @@ static cp_status read_sides(const place *at, const yaml_class *yaml, cp_suite_cl
     return CP_OK;
 }
 
-static cp_status read_lists(const place *at, const yaml_class *yaml, cp_suite_class *class)
+static cp_status read_struck(const place *at, const cp_suite_yaml_class *yaml,
+                             cp_suite_class *class)
+{
+    class->is_struck = yaml->struck != NULL;
+    class->is_struck_on_rear = class->is_struck && strcmp(yaml->struck, "rear") == 0;
+    if (class->is_struck && !class->is_struck_on_rear && strcmp(yaml->struck, "side") != 0)
+        return fail_at(at, "struck", "must be side or rear", yaml->struck);
+    cp_status status =
+        read_numbers(at, "struck_speeds_km_h", yaml->struck_speeds_km_h,
+                     yaml->struck_speeds_km_h_count, 0, 300, &class->struck_speeds_km_h);
+    if (status == CP_OK)
+        status =
+            read_numbers(at, "at_mm", yaml->at_mm, yaml->at_mm_count, -8000, 8000, &class->at_mm);
+    if (status == CP_OK)
+        status = read_numbers(at, "struck_forces_1", yaml->struck_forces_1,
+                              yaml->struck_forces_1_count, 0.2, 3.0, &class->struck_forces_1);
+    if (status == CP_OK && yaml->at_sweep != NULL)
+        status = read_places(at, yaml->at_sweep, class);
+    if (status != CP_OK)
+        return status;
+    bool about_struck =
+        class->struck_speeds_km_h.count + class->at_mm.count + class->struck_forces_1.count > 0;
+    if (!class->is_struck && about_struck)
+        return fail_at(at, "struck",
+                       "is missing: struck_speeds_km_h, at_mm and struck_forces_1 "
+                       "need it",
+                       NULL);
+    if (class->struck_speeds_km_h.count > 0 &&
+        class->struck_speeds_km_h.count != class->speeds_km_h.count)
+        return fail_at(at, "struck_speeds_km_h", "needs one for each of speeds_km_h", NULL);
+    if (class->is_struck && (class->overlaps_1.count > 0 || class->form != CP_SUITE_LISTS))
+        return fail_at(at, "struck", "does not go with overlaps or a table", NULL);
+    if (class->is_struck && (class->against.count > 0) == class->has_barrier)
+        return fail_at(at, "struck", "needs against or barrier, one of the two", NULL);
+    return CP_OK;
+}
+
+static cp_status read_lists(const place *at, const cp_suite_yaml_class *yaml, cp_suite_class *class)
 {
     cp_status status = read_numbers(at, "speeds_km_h", yaml->speeds_km_h, yaml->speeds_km_h_count,
                                     0.5, 300, &class->speeds_km_h);
@@ -445,11 +371,14 @@ static cp_status read_lists(const place *at, const yaml_class *yaml, cp_suite_cl
                               &class->angles_deg);
     if (status == CP_OK && yaml->overlap_sweep != NULL)
         status = read_sweep(at, yaml->overlap_sweep, class);
-    return status == CP_OK ? read_sides(at, yaml, class) : status;
+    if (status == CP_OK)
+        status = read_sides(at, yaml, class);
+    return status == CP_OK ? read_struck(at, yaml, class) : status;
 }
 
 // That the class says what meets what, and nothing that its table says.
-static cp_status check_class(const place *at, const yaml_class *yaml, const cp_suite_class *class)
+static cp_status check_class(const place *at, const cp_suite_yaml_class *yaml,
+                             const cp_suite_class *class)
 {
     bool by_lists = class->form == CP_SUITE_LISTS, pair = class->against.count > 0;
     bool listed = class->speeds_km_h.count + class->overlaps_1.count + class->angles_deg.count +
@@ -466,8 +395,12 @@ static cp_status check_class(const place *at, const yaml_class *yaml, const cp_s
         return fail_at(at, "barrier", "is missing: a class needs barrier, against or both", NULL);
     if (class->form == CP_SUITE_SEPARATION && !class->has_barrier)
         return fail_at(at, "barrier", "is missing: form separation needs it", NULL);
+    bool party = class->is_struck || (class->has_barrier && cp_barrier_is_party(&class->barrier));
+    if (pair && !class->is_struck && party)
+        return fail_at(at, "barrier", "with a mass or a face does not go with against", NULL);
     if (class->opponent_speeds_km_h.count > 0 &&
-        (!pair || class->opponent_speeds_km_h.count != class->speeds_km_h.count))
+        (!(pair || party) || class->is_struck ||
+         class->opponent_speeds_km_h.count != class->speeds_km_h.count))
         return fail_at(at, "opponent_speeds_km_h", "needs against, and one for each of speeds_km_h",
                        NULL);
     for (size_t c = 0; c < class->comparison_count; c++) {
@@ -475,21 +408,22 @@ static cp_status check_class(const place *at, const yaml_class *yaml, const cp_s
         bool of_pair = cp_suite_quantity_is_of_pair(quantity);
         char key[64];
         snprintf(key, sizeof key, "compare[%zu].quantity", c);
-        bool of_tests = class->form == CP_SUITE_OBLIQUE || class->form == CP_SUITE_RECONSTRUCTED;
-        bool have_pair = pair || of_tests;
-        if (class->comparison[c].car > 0 && !of_tests)
-            return fail_at(at, key, "of one car goes with a table of pairs",
+        bool of_tests = class->form == CP_SUITE_OBLIQUE || class->form == CP_SUITE_RECONSTRUCTED ||
+                        class->form == CP_SUITE_STRUCK;
+        bool have_pair = pair || of_tests || party;
+        if (class->comparison[c].car > 0 && !of_tests && !party)
+            return fail_at(at, key, "of one car goes with struck or a table of pairs",
                            CP_SUITE_QUANTITY_TEXT[quantity]);
         if (of_pair && !have_pair)
             return fail_at(at, key, "needs a second car (against)",
                            CP_SUITE_QUANTITY_TEXT[quantity]);
-        if (quantity == CP_SUITE_wall_difference_pct && !class->has_barrier)
+        if (quantity == CP_SUITE_wall_difference_pct && (!class->has_barrier || party))
             return fail_at(at, key, "needs a barrier too", CP_SUITE_QUANTITY_TEXT[quantity]);
     }
     return CP_OK;
 }
 
-static cp_status read_class(const place *at, const yaml_class *yaml, cp_suite_class *class)
+static cp_status read_class(const place *at, const cp_suite_yaml_class *yaml, cp_suite_class *class)
 {
     cp_status status = read_text(at, "class", yaml->name, class->name, sizeof class->name);
     if (status == CP_OK)
@@ -520,8 +454,8 @@ static cp_status read_class(const place *at, const yaml_class *yaml, cp_suite_cl
     return status == CP_OK ? check_class(at, yaml, class) : status;
 }
 
-static cp_status read_classes(const cp_yaml_file *file, const yaml_suite *yaml, cp_suite *suite,
-                              cp_error *error)
+static cp_status read_classes(const cp_yaml_file *file, const cp_suite_yaml_suite *yaml,
+                              cp_suite *suite, cp_error *error)
 {
     suite->class = calloc(yaml->classes_count, sizeof *suite->class);
     if (suite->class == NULL)
@@ -544,10 +478,10 @@ cp_status cp_suite_load(const char *path, cp_suite *suite, cp_error *error)
 {
     *suite = (cp_suite){0};
     cp_yaml_file file = {0};
-    cp_status status = cp_yaml_load(path, &SUITE_VALUE, &file, error);
+    cp_status status = cp_yaml_load(path, &CP_SUITE_YAML_VALUE, &file, error);
     if (status != CP_OK)
         return status;
-    const yaml_suite *yaml = (const yaml_suite *)file.data;
+    const cp_suite_yaml_suite *yaml = (const cp_suite_yaml_suite *)file.data;
     place here = {.file = &file, .error = error};
     suite->path = strdup(path);
     if (suite->path == NULL)
@@ -565,45 +499,4 @@ cp_status cp_suite_load(const char *path, cp_suite *suite, cp_error *error)
         status = read_classes(&file, yaml, suite, error);
     cp_yaml_close(&file);
     return status;
-}
-
-// ---- the end -----------------------------------------------------------------------------------
-
-static void destroy_texts(cp_suite_texts *texts)
-{
-    for (size_t k = 0; k < texts->count; k++)
-        free(texts->text[k]);
-    free(texts->text);
-}
-
-static void destroy_class(cp_suite_class *class)
-{
-    for (size_t c = 0; c < class->comparison_count; c++) {
-        cp_suite_comparison *comparison = &class->comparison[c];
-        free(comparison->times_ms.value);
-        free(comparison->reference.value);
-        free(comparison->low.value);
-        free(comparison->high.value);
-    }
-    free(class->comparison);
-    free(class->table_path);
-    free(class->speeds_km_h.value);
-    free(class->opponent_speeds_km_h.value);
-    free(class->overlaps_1.value);
-    free(class->sides_1.value);
-    free(class->angles_deg.value);
-    destroy_texts(&class->rows_with);
-    destroy_texts(&class->vehicles);
-    destroy_texts(&class->against);
-}
-
-void cp_suite_destroy(cp_suite *suite)
-{
-    for (size_t k = 0; k < suite->class_count; k++)
-        destroy_class(&suite->class[k]);
-    free(suite->class);
-    destroy_texts(&suite->vehicles);
-    free(suite->quantiles_path);
-    free(suite->path);
-    *suite = (cp_suite){0};
 }

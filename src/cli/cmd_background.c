@@ -11,7 +11,7 @@
 #include <string.h>
 
 typedef struct arguments {
-    const char *path;
+    cp_args_input input;
     const char *db_path;
     double duration_s;    /* NAN: the study's, or 900 */
     double step_length_s; /* NAN: 0.1 */
@@ -40,6 +40,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &a->format;
+        state->child_inputs[1] = &a->input;
         return 0;
     case DURATION:
         a->duration_s = cp_args_number(state, "--duration", argument, 0.001, 1e6, "s");
@@ -56,21 +57,13 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case FREE_OUTPUTS:
         a->free_outputs = true;
         return 0;
-    case ARGP_KEY_ARG:
-        if (a->path)
-            argp_error(state, "one network at a time, found '%s' too", argument);
-        a->path = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!a->path)
-            argp_error(state, "which network? SUMOCFG or STUDY.yaml is missing");
-        return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
 
-static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+static const struct argp_child CHILDREN[] = {
+    {&CP_ARGS_FORMAT, 0, NULL, 0}, {&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
@@ -157,14 +150,14 @@ static cp_status look_at_options(const arguments *a, cp_background_request *requ
                                  cp_error *error)
 {
     cp_sumo_configuration configuration = {0};
-    cp_status status = cp_sumo_configuration_read(a->path, NULL, 0, &configuration, error);
+    cp_status status = cp_sumo_configuration_read(a->input.path, NULL, 0, &configuration, error);
     if (status == CP_OK) {
         double length_s = cp_sumo_configuration_length_s(&configuration);
         if (isnan(a->duration_s) && length_s > 0.0)
             request->duration_s = fmin(request->duration_s, length_s);
         status = cp_sumo_configuration_check(&configuration, request->duration_s, error);
     }
-    const cp_scenario_inputs inputs = {.sumocfg_path = a->path};
+    const cp_scenario_inputs inputs = {.sumocfg_path = a->input.path};
     if (status == CP_OK && !a->free_outputs)
         status = cp_scenario_outputs_check(&inputs, error);
     if (status == CP_OK)
@@ -178,7 +171,7 @@ static cp_status run_study(const arguments *a, cp_background_request request, cp
                            cp_error *error)
 {
     cp_study study = {0};
-    cp_status status = cp_study_load(a->path, &study, error);
+    cp_status status = cp_study_load(a->input.path, &study, error);
     if (status != CP_OK)
         return status;
     status = cp_study_tell_options(&study, error);
@@ -198,14 +191,18 @@ cp_status cmd_background(int argc, char **argv, cp_error *error)
 {
     static const char *const COLUMN[] = {"network", "simulated_s", "vehicle_km", "reported_by",
                                          "reason",  "crash_type",  "contacts"};
-    arguments a = {.duration_s = NAN, .step_length_s = NAN, .seed = -1};
+    arguments a = {.input = {.one = "network", .missing = "which network? SUMOCFG or STUDY.yaml"},
+                   .duration_s = NAN,
+                   .step_length_s = NAN,
+                   .seed = -1};
     cp_args_parse(&ARGP, argc, argv, &a);
-    if (a.db_path != NULL && !is_study(a.path))
-        return cp_fail(error, CP_BAD_INPUT, "%s: --db is for the scenarios of a study", a.path);
+    if (a.db_path != NULL && !is_study(a.input.path))
+        return cp_fail(error, CP_BAD_INPUT, "%s: --db is for the scenarios of a study",
+                       a.input.path);
     uint64_t seed = a.seed < 0 ? 1 : (uint64_t)a.seed;
-    double duration_s = isnan(a.duration_s) && !is_study(a.path) ? 900.0 : a.duration_s;
-    cp_background_request request = {.path = a.path,
-                                     .seed = a.seed < 0 && is_study(a.path) ? NULL : &seed,
+    double duration_s = isnan(a.duration_s) && !is_study(a.input.path) ? 900.0 : a.duration_s;
+    cp_background_request request = {.path = a.input.path,
+                                     .seed = a.seed < 0 && is_study(a.input.path) ? NULL : &seed,
                                      .step_length_s =
                                          isnan(a.step_length_s) ? 0.1 : a.step_length_s,
                                      .duration_s = duration_s,
@@ -214,11 +211,11 @@ cp_status cmd_background(int argc, char **argv, cp_error *error)
     cp_table table = {0};
     cp_table_begin(&table, COLUMN, sizeof COLUMN / sizeof *COLUMN);
     cp_status status = CP_OK;
-    if (!is_study(a.path))
+    if (!is_study(a.input.path))
         status = look_at_options(&a, &request, error);
     if (status == CP_OK)
-        status = is_study(a.path) ? run_study(&a, request, &table, error)
-                                  : run_one(&request, &table, error);
+        status = is_study(a.input.path) ? run_study(&a, request, &table, error)
+                                        : run_one(&request, &table, error);
     if (status == CP_OK)
         status = cp_table_print(&table, a.format, stdout, error);
     cp_table_destroy(&table);

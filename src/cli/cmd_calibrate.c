@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "calibrate/calibration.h"
+#include "calibrate/fit_file.h"
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "crash/crash_simulation.h"
@@ -7,7 +8,7 @@
 #include <stdio.h>
 
 typedef struct arguments {
-    const char *fit_path;
+    cp_args_input input;
     const char *output_path;
 } arguments;
 
@@ -24,22 +25,18 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     arguments *a = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &a->input;
+        return 0;
     case 'o':
         a->output_path = argument;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (a->fit_path != NULL)
-            argp_error(state, "one fit at a time, found '%s' too", argument);
-        a->fit_path = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (a->fit_path == NULL)
-            argp_error(state, "which fit? FIT.yaml is missing");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
+
+static const struct argp_child CHILDREN[] = {{&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
@@ -54,16 +51,17 @@ static const struct argp ARGP = {
         "budget (db/vehicles/README.md). A killed fit goes on where it was when called again.\n\n"
         "Example:\n"
         "  crashpulse calibrate db/vehicles/honda_accord_2014.fit.yaml\n",
+    .children = CHILDREN,
 };
 
 cp_status cmd_calibrate(int argc, char **argv, cp_error *error)
 {
-    arguments a = {0};
+    arguments a = {.input = {.one = "fit", .missing = "which fit? FIT.yaml"}};
     cp_args_parse(&ARGP, argc, argv, &a);
 
     cp_fit fit;
     cp_calibration calibration = {0};
-    cp_status status = cp_fit_load(a.fit_path, a.output_path, &fit, error);
+    cp_status status = cp_fit_load(a.input.path, a.output_path, &fit, error);
     if (status != CP_OK)
         return status;
     status = cp_crash_library_begin(error);

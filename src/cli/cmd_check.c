@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 typedef struct arguments {
-    const char *db_path;
+    cp_args_input input;
     bool upgrade;
     cp_format format;
 } arguments;
@@ -19,28 +19,22 @@ static const struct argp_option OPTIONS[] = {
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     arguments *a = state->input;
+    (void)argument;
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &a->format;
+        state->child_inputs[1] = &a->input;
         return 0;
     case 'u':
         a->upgrade = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (a->db_path)
-            argp_error(state, "one database at a time, found '%s' too", argument);
-        a->db_path = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!a->db_path)
-            argp_error(state, "which database? DB is missing");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
 
-static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+static const struct argp_child CHILDREN[] = {
+    {&CP_ARGS_FORMAT, 0, NULL, 0}, {&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
@@ -78,19 +72,19 @@ static cp_status print(const cp_inspection *inspection, cp_format format, cp_err
 
 cp_status cmd_check(int argc, char **argv, cp_error *error)
 {
-    arguments a = {0};
+    arguments a = {.input = CP_ARGS_DATABASE};
     cp_args_parse(&ARGP, argc, argv, &a);
 
     cp_store *store = NULL;
     cp_inspection inspection;
     cp_status status = CP_OK;
     if (a.upgrade) {
-        status = cp_store_open(a.db_path, CP_STORE_WRITE, &store, error);
+        status = cp_store_open(a.input.path, CP_STORE_WRITE, &store, error);
         cp_store_finish(store);
         cp_store_close(store);
     }
     if (status == CP_OK)
-        status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+        status = cp_store_open(a.input.path, CP_STORE_READ, &store, error);
     if (status != CP_OK)
         return status;
     status = cp_inspection_run(store, &inspection, error);
@@ -98,7 +92,7 @@ cp_status cmd_check(int argc, char **argv, cp_error *error)
     if (status == CP_OK)
         status = print(&inspection, a.format, error);
     if (status == CP_OK && inspection.wrong > 0)
-        status = cp_fail(error, CP_STORE_FAILED, "%s: %lld things are wrong in it", a.db_path,
+        status = cp_fail(error, CP_STORE_FAILED, "%s: %lld things are wrong in it", a.input.path,
                          (long long)inspection.wrong);
     return status;
 }

@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/caveats.h"
+#include "analysis/comparison.h"
+#include "analysis/comparison_store.h"
+#include "analysis/field_comparison.h"
+#include "analysis/grouping.h"
+#include "analysis/network_background.h"
+#include "analysis/quantity.h"
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "cli/comparison_table.h"
 #include "cli/field_output.h"
 #include "core/log.h"
 #include "report/answer.h"
-#include "report/caveats.h"
 #include "report/comparison_json.h"
-#include "report/field_comparison.h"
-#include "report/grouping.h"
-#include "report/network_background.h"
-#include "report/quantity.h"
+#include "report/field_words.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 typedef struct arguments {
-    const char *db_path;
+    cp_args_input input;
     const char *baseline;
     const char *scenario;
     const char *by;
@@ -78,6 +81,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &a->format;
+        state->child_inputs[1] = &a->input;
         return 0;
     case 'b':
         a->baseline = argument;
@@ -113,14 +117,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_MODEL_UNCERTAINTY:
         a->model_uncertainty = true;
         return 0;
-    case ARGP_KEY_ARG:
-        if (a->db_path)
-            argp_error(state, "one database at a time, found '%s' too", argument);
-        a->db_path = argument;
-        return 0;
     case ARGP_KEY_END:
-        if (!a->db_path)
-            argp_error(state, "which database? DB is missing");
         if (!a->field && (a->field_margins || a->field_cap > 0.0))
             argp_error(state, "--field-margins and --field-cap go with --field");
         return 0;
@@ -129,7 +126,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     }
 }
 
-static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+static const struct argp_child CHILDREN[] = {
+    {&CP_ARGS_FORMAT, 0, NULL, 0}, {&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
@@ -212,12 +210,12 @@ static void job_destroy(job *j)
 static cp_status read_ensemble(job *j, cp_error *error)
 {
     cp_status status = cp_model_ensemble_read(j->store, &j->data, &j->ensemble, error);
-    if (status == CP_OK && j->ensemble.count < CP_MODEL_SETS_MIN)
+    if (status == CP_OK && j->ensemble.count < CP_MODEL_SETS_MIN && j->data.evidence_count == 0)
         return cp_fail(error, CP_BAD_INPUT,
                        "%s: its crashes have %zu parameter sets in common, --model-uncertainty "
                        "needs %d at least; a vehicle file gets an ensemble by 'ensemble:' of its "
                        "fit file (crashpulse calibrate), 'crashpulse run' then simulates by each",
-                       j->a.db_path, j->ensemble.count, CP_MODEL_SETS_MIN);
+                       j->a.input.path, j->ensemble.count, CP_MODEL_SETS_MIN);
     j->options.ensemble = &j->ensemble;
     return status;
 }
@@ -375,20 +373,20 @@ static cp_status store(job *j, cp_error *error)
 
 cp_status cmd_compare(int argc, char **argv, cp_error *error)
 {
-    job j = {.options = cp_comparison_options_default()};
+    job j = {.a.input = CP_ARGS_DATABASE, .options = cp_comparison_options_default()};
     memcpy(j.a.above, j.options.above, sizeof j.a.above);
     cp_args_parse(&ARGP, argc, argv, &j.a);
     memcpy(j.options.above, j.a.above, sizeof j.a.above);
 
     // A database that cannot be written can be compared all the same.
     bool stored = !j.a.no_store;
-    if (stored && access(j.a.db_path, F_OK) == 0 && access(j.a.db_path, W_OK) != 0) {
-        cp_log_warning("%s is read-only: the figures are not stored in it", j.a.db_path);
+    if (stored && access(j.a.input.path, F_OK) == 0 && access(j.a.input.path, W_OK) != 0) {
+        cp_log_warning("%s is read-only: the figures are not stored in it", j.a.input.path);
         stored = false;
     }
     size_t baseline = 0;
     cp_status status =
-        cp_store_open(j.a.db_path, stored ? CP_STORE_WRITE : CP_STORE_READ, &j.store, error);
+        cp_store_open(j.a.input.path, stored ? CP_STORE_WRITE : CP_STORE_READ, &j.store, error);
     if (status == CP_OK)
         status = cp_study_data_read(j.store, &j.data, error);
     if (status == CP_OK)

@@ -6,6 +6,7 @@
 #include "cli/crash_samples.h"
 #include "core/output_files.h"
 #include "core/units.h"
+#include "crash/named_vehicle.h"
 #include "report/animation.h"
 
 #include <limits.h>
@@ -54,7 +55,7 @@ enum {
 
 static const struct argp_option OPTIONS[] = {
     {"against", AGAINST, "OPPONENT", 0,
-     "'barrier' (rigid, rounded corners; the default) or a vehicle file", 0},
+     "'barrier' (rigid, rounded corners; the default) or a vehicle", 0},
     {"speed", 's', "KMH", 0, "speed of the vehicle, km/h", 0},
     {"opponent-speed", OPPONENT_SPEED, "KMH", 0, "speed of the opponent, km/h (default: the same)",
      0},
@@ -70,8 +71,8 @@ static const struct argp_option OPTIONS[] = {
     {"animate", ANIMATE, "FILE.html", 0,
      "write a page that shows the crash from above over time beside its pulses", 0},
     {"overlay-against", OVERLAY_AGAINST, "OPPONENT", 0,
-     "lay a second run over the animation: the same, but against 'barrier' or a vehicle file", 0},
-    {"overlay-vehicle", OVERLAY_VEHICLE, "VEHICLE3.yaml", 0,
+     "lay a second run over the animation: the same, but against 'barrier' or a vehicle", 0},
+    {"overlay-vehicle", OVERLAY_VEHICLE, "VEHICLE", 0,
      "lay a second run over the animation: the same, but with this vehicle", 0},
     {"samples", SAMPLES, "N", 0,
      "crash N times with parameters drawn from the scatter in the vehicle files; print medians and "
@@ -86,19 +87,22 @@ static const struct argp_option OPTIONS[] = {
     {0},
 };
 
+static void check_raw(const arguments *a, struct argp_state *state)
+{
+    cp_args_need(state, !a->raw || a->pulse_path != NULL,
+                 "--raw is about the pulse file: --pulse FILE.csv");
+}
+
 // A stored crash brings all with it.
 static void check_stored(const arguments *a, struct argp_state *state)
 {
-    if (a->crash_id < 0)
-        argp_error(state, "which crash? --crash ID is missing");
-    if (!a->from_path)
-        argp_error(state, "--crash is about a database: --from DB is missing");
+    cp_args_need(state, a->crash_id >= 0, "which crash? --crash ID");
+    cp_args_need(state, a->from_path != NULL, "--crash is about a database: --from DB");
     if (a->vehicle_path || a->opponent_path || a->described || a->samples > 0 ||
         a->overlay_vehicle_path || a->overlay_opponent_path)
         argp_error(state, "--from takes vehicles, speeds and all else from the database; only "
                           "--treatment, --pulse, --raw, --animate and --format go with it");
-    if (a->raw && !a->pulse_path)
-        argp_error(state, "--raw is about the pulse file: --pulse FILE.csv is missing");
+    check_raw(a, state);
 }
 
 static void check(const arguments *a, struct argp_state *state)
@@ -107,20 +111,16 @@ static void check(const arguments *a, struct argp_state *state)
         check_stored(a, state);
         return;
     }
-    if (!a->vehicle_path)
-        argp_error(state, "which vehicle? VEHICLE.yaml is missing");
-    if (isnan(a->speed_km_h))
-        argp_error(state, "how fast? --speed KMH is missing");
+    cp_args_need(state, a->vehicle_path != NULL, "which vehicle? VEHICLE");
+    cp_args_need(state, !isnan(a->speed_km_h), "how fast? --speed KMH");
     bool overlay = a->overlay_vehicle_path || a->overlay_opponent_path;
     bool overlay_car = a->overlay_opponent_path && strcmp(a->overlay_opponent_path, "barrier") != 0;
     if (!a->opponent_path && !overlay_car && !isnan(a->opponent_speed_km_h))
-        argp_error(state, "--opponent-speed needs an opponent: --against VEHICLE2.yaml");
-    if (overlay && !a->animation_path)
-        argp_error(state, "an overlay is drawn in the animation: --animate FILE.html is missing");
-    if (a->seed >= 0 && a->samples == 0)
-        argp_error(state, "--seed is about samples: --samples N is missing");
-    if (a->raw && !a->pulse_path)
-        argp_error(state, "--raw is about the pulse file: --pulse FILE.csv is missing");
+        argp_error(state, "--opponent-speed needs an opponent: --against VEHICLE");
+    cp_args_need(state, !overlay || a->animation_path != NULL,
+                 "an overlay is drawn in the animation: --animate FILE.html");
+    cp_args_need(state, a->seed < 0 || a->samples > 0, "--seed is about samples: --samples N");
+    check_raw(a, state);
 }
 
 // Options about what to make of the crash.
@@ -209,32 +209,34 @@ static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}}
 static const struct argp ARGP = {
     .options = OPTIONS,
     .parser = parse,
-    .args_doc = "VEHICLE.yaml --speed KMH\n--from DB --crash ID",
-    .doc =
-        "Simulate one crash of the vehicle on the multibody surrogate, against a rigid barrier "
-        "or another car, and print OLC, delta-v, peak and crush."
-        "\v"
-        "The cars are moved along their headings until they touch. Axes of a vehicle: x forward, "
-        "y left. Every result says whether it lies in the range the vehicle model was validated "
-        "in.\n\n"
-        "Examples:\n"
-        "  crashpulse crash car.yaml --speed 56\n"
-        "  crashpulse crash car.yaml --speed 40 --offset 400 --angle 15 --format json\n"
-        "  crashpulse crash car.yaml --against other.yaml --speed 50 --pulse pulse.csv\n"
-        "  crashpulse crash a.yaml --speed 56 --animate a.html --overlay-against b.yaml\n"
-        "  crashpulse crash car.yaml --speed 50 --samples 1000 --seed 7\n"
-        "  crashpulse crash --from demo.db --crash 2305843009213693952 --animate again.html\n",
+    .args_doc = "VEHICLE --speed KMH\n--from DB --crash ID",
+    .doc = "Simulate one crash of the vehicle on the multibody surrogate, against a rigid barrier "
+           "or another car, and print OLC, delta-v, peak and crush."
+           "\v"
+           "A VEHICLE is a name (honda_accord_2014; an unknown one is answered with the list) or, "
+           "with a "
+           "'/' or a '.' in it, a vehicle file. The cars are moved along their headings until they "
+           "touch. Axes of a vehicle: x forward, "
+           "y left. Every result says whether it lies in the range the vehicle model was validated "
+           "in.\n\n"
+           "Examples:\n"
+           "  crashpulse crash honda_accord_2014 --speed 56\n"
+           "  crashpulse crash car.yaml --speed 40 --offset 400 --angle 15 --format json\n"
+           "  crashpulse crash car.yaml --against other.yaml --speed 50 --pulse pulse.csv\n"
+           "  crashpulse crash a.yaml --speed 56 --animate a.html --overlay-against b.yaml\n"
+           "  crashpulse crash car.yaml --speed 50 --samples 1000 --seed 7\n"
+           "  crashpulse crash --from demo.db --crash 2305843009213693952 --animate again.html\n",
     .children = CHILDREN,
 };
 
-// A vehicle file, or the barrier.
+// A vehicle by name or file, or the barrier.
 static cp_status load(const char *path, cp_vehicle_model *model, const cp_vehicle_model **loaded,
                       cp_error *error)
 {
     *loaded = NULL;
     if (!path || strcmp(path, "barrier") == 0)
         return CP_OK;
-    cp_status status = cp_vehicle_model_load(path, model, error);
+    cp_status status = cp_named_vehicle_load(NULL, path, model, error);
     if (status == CP_OK)
         *loaded = model;
     return status;

@@ -8,13 +8,14 @@
 #include "study/occasions.h"
 #include "study/plan.h"
 #include "study/scenario_outputs.h"
+#include "study/study_file.h"
 #include "study/type_mapping.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
 
 typedef struct arguments {
-    const char *study_path;
+    cp_args_input input;
     const char *db_path;
     bool each;
     cp_format format;
@@ -34,6 +35,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &a->format;
+        state->child_inputs[1] = &a->input;
         return 0;
     case 'd':
         a->db_path = argument;
@@ -41,21 +43,13 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case EACH:
         a->each = true;
         return 0;
-    case ARGP_KEY_ARG:
-        if (a->study_path)
-            argp_error(state, "one study file at a time, found '%s' too", argument);
-        a->study_path = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!a->study_path)
-            argp_error(state, "which study? STUDY.yaml is missing");
-        return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
 
-static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+static const struct argp_child CHILDREN[] = {
+    {&CP_ARGS_FORMAT, 0, NULL, 0}, {&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
@@ -294,6 +288,25 @@ static size_t tell_outputs(const cp_study_scenario *scenario, const cp_scenario_
     return refused;
 }
 
+// What code the study brings along.
+static void list_libraries(const cp_study *study, cp_format format)
+{
+    const cp_study_variant *variant = NULL;
+    const cp_library *library;
+    size_t count = 0;
+    for (; (library = cp_study_library(study, count, &variant)) != NULL; count++) {
+        if (format != CP_FORMAT_TABLE)
+            continue;
+        printf("%svariant %s loads code of its own: ", count == 0 ? "\n" : "", variant->base);
+        cp_text_print(stdout, library->written, "");
+        printf(", SHA-256 %s\n", library->hash);
+    }
+    if (count > 0)
+        cp_log_warning("the study asks to load code of its own (%zu librar%s): 'crashpulse run' "
+                       "refuses that unless it is given --allow-plugins",
+                       count, count == 1 ? "y" : "ies");
+}
+
 static cp_status list_outputs(const cp_study *study, cp_format format, cp_error *error)
 {
     size_t refused = 0;
@@ -318,13 +331,13 @@ static cp_status list_outputs(const cp_study *study, cp_format format, cp_error 
 
 cp_status cmd_plan(int argc, char **argv, cp_error *error)
 {
-    arguments a = {0};
+    arguments a = {.input = CP_ARGS_STUDY};
     cp_args_parse(&ARGP, argc, argv, &a);
 
     planned p = {0};
     cp_error contradiction = {0};
     cp_status agrees = CP_OK;
-    cp_status status = make_plan(a.study_path, a.db_path != NULL, &p, error);
+    cp_status status = make_plan(a.input.path, a.db_path != NULL, &p, error);
     // What the database contradicts is said below the plan.
     if (status == CP_OK && a.db_path != NULL)
         agrees = look_into_database(a.db_path, &p, &contradiction);
@@ -338,6 +351,8 @@ cp_status cmd_plan(int argc, char **argv, cp_error *error)
         print_summary(&p);
     if (status == CP_OK)
         status = list_outputs(&p.study, a.format, error);
+    if (status == CP_OK)
+        list_libraries(&p.study, a.format);
     release(&p);
     if (status == CP_OK && agrees != CP_OK) {
         *error = contradiction;

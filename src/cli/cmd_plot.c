@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/comparison.h"
+#include "analysis/grouping.h"
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/log.h"
 #include "core/output_files.h"
-#include "report/grouping.h"
 #include "report/plot.h"
 
 #include <string.h>
 
 typedef struct arguments {
-    const char *db_path;
+    cp_args_input input;
     const char *output_path;
     const char *baseline;
     const char *scenario;
@@ -60,6 +61,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     arguments *a = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &a->input;
+        return 0;
     case 'o':
         a->output_path = argument;
         return 0;
@@ -76,25 +80,22 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         a->scope = CP_SCOPE_INSIDE;
         return 0;
     case ARGP_KEY_ARG:
+        if (a->input.path == NULL)
+            return ARGP_ERR_UNKNOWN;
         if (a->has_kind)
             argp_error(state, "one kind at a time, found '%s' too", argument);
-        if (a->db_path)
-            read_kind(a, argument, state);
-        else
-            a->db_path = argument;
+        read_kind(a, argument, state);
         return 0;
     case ARGP_KEY_END:
-        if (!a->db_path)
-            argp_error(state, "which database? DB is missing");
-        if (!a->has_kind)
-            argp_error(state, "which figure? KIND is missing");
-        if (!a->output_path)
-            argp_error(state, "where to? --output FILE.svg or FILE.pdf is missing");
+        cp_args_need(state, a->has_kind, "which figure? KIND");
+        cp_args_need(state, a->output_path != NULL, "where to? --output FILE.svg or FILE.pdf");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
+
+static const struct argp_child CHILDREN[] = {{&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
@@ -111,11 +112,12 @@ static const struct argp ARGP = {
         "Examples:\n"
         "  crashpulse plot demo.db olc --output olc.pdf\n"
         "  crashpulse plot demo.db map --scenario left_turn --output map.svg\n",
+    .children = CHILDREN,
 };
 
 cp_status cmd_plot(int argc, char **argv, cp_error *error)
 {
-    arguments a = {.scope = CP_SCOPE_ALL};
+    arguments a = {.input = CP_ARGS_DATABASE, .scope = CP_SCOPE_ALL};
     cp_args_parse(&ARGP, argc, argv, &a);
     cp_store *store = NULL;
     cp_study_data data = {0};
@@ -125,9 +127,9 @@ cp_status cmd_plot(int argc, char **argv, cp_error *error)
     cp_comparison_options options = cp_comparison_options_default();
     options.permutations = 0; // no figure shows a p-value
     cp_status status =
-        cp_output_files_check(&a.output_path, 1, (const char *const[]){a.db_path}, 1, error);
+        cp_output_files_check(&a.output_path, 1, (const char *const[]){a.input.path}, 1, error);
     if (status == CP_OK)
-        status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+        status = cp_store_open(a.input.path, CP_STORE_READ, &store, error);
     if (status == CP_OK)
         status = cp_study_data_read(store, &data, error);
     if (status == CP_OK)

@@ -7,7 +7,7 @@
 #include "report/report.h"
 
 typedef struct arguments {
-    const char *db_path;
+    cp_args_input input;
     const char *output_path;
     const char *baseline;
 } arguments;
@@ -22,27 +22,24 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     arguments *a = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &a->input;
+        return 0;
     case 'o':
         a->output_path = argument;
         return 0;
     case 'b':
         a->baseline = argument;
         return 0;
-    case ARGP_KEY_ARG:
-        if (a->db_path)
-            argp_error(state, "one database at a time, found '%s' too", argument);
-        a->db_path = argument;
-        return 0;
     case ARGP_KEY_END:
-        if (!a->db_path)
-            argp_error(state, "which database? DB is missing");
-        if (!a->output_path)
-            argp_error(state, "where to? --output FILE.html is missing");
+        cp_args_need(state, a->output_path != NULL, "where to? --output FILE.html");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
+
+static const struct argp_child CHILDREN[] = {{&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
@@ -56,6 +53,7 @@ static const struct argp ARGP = {
         "SVG and its data as CSV.\n\n"
         "Example:\n"
         "  crashpulse report demo.db --output demo.html\n",
+    .children = CHILDREN,
 };
 
 // Defaults of every driver error and function, so that the page can show what a study changed.
@@ -76,14 +74,14 @@ static json_t *controls_json(void)
 
 cp_status cmd_report(int argc, char **argv, cp_error *error)
 {
-    arguments a = {0};
+    arguments a = {.input = CP_ARGS_DATABASE};
     cp_args_parse(&ARGP, argc, argv, &a);
     cp_store *store = NULL;
     json_t *controls = controls_json();
     cp_status status =
-        cp_output_files_check(&a.output_path, 1, (const char *const[]){a.db_path}, 1, error);
+        cp_output_files_check(&a.output_path, 1, (const char *const[]){a.input.path}, 1, error);
     if (status == CP_OK)
-        status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+        status = cp_store_open(a.input.path, CP_STORE_READ, &store, error);
     if (status == CP_OK)
         status = cp_report_write(store, a.baseline, controls, a.output_path, error);
     if (status == CP_OK)

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/caveats.h"
+#include "analysis/network_background.h"
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/log.h"
-#include "report/caveats.h"
-#include "report/network_background.h"
 #include "run/runner.h"
 
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { TIME_LIMIT = 256, SHARD, NO_CHECK, FREE_OUTPUTS };
+enum { TIME_LIMIT = 256, SHARD, NO_CHECK, FREE_OUTPUTS, ALLOW_PLUGINS };
 
 static const struct argp_option OPTIONS[] = {
     {"db", 'd', "FILE", 0,
@@ -27,6 +27,10 @@ static const struct argp_option OPTIONS[] = {
      "let SUMO write and connect wherever the scenarios say, not only in the folders of their "
      ".sumocfg ('crashpulse plan' lists what they ask for)",
      0},
+    {"allow-plugins", ALLOW_PLUGINS, NULL, 0,
+     "load the libraries that the study names: code that may do what you may ('crashpulse plan' "
+     "lists them)",
+     0},
     {0},
 };
 
@@ -41,10 +45,19 @@ static void parse_shard(const char *text, cp_runner_options *options, struct arg
         argp_error(state, "--shard must be I/N with I from 1 to N, found '%s'", text);
 }
 
+typedef struct arguments {
+    cp_args_input input;
+    cp_runner_options options;
+} arguments;
+
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
-    cp_runner_options *options = state->input;
+    arguments *a = state->input;
+    cp_runner_options *options = &a->options;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &a->input;
+        return 0;
     case 'd':
         options->db_path = argument;
         return 0;
@@ -60,24 +73,21 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case FREE_OUTPUTS:
         options->free_outputs = true;
         return 0;
+    case ALLOW_PLUGINS:
+        options->allow_plugins = true;
+        return 0;
     case SHARD:
         parse_shard(argument, options, state);
         return 0;
-    case ARGP_KEY_ARG:
-        if (options->study_path)
-            argp_error(state, "one study file at a time, found '%s' too", argument);
-        options->study_path = argument;
-        return 0;
     case ARGP_KEY_END:
-        if (!options->study_path)
-            argp_error(state, "which study? STUDY.yaml is missing");
-        if (!options->db_path)
-            argp_error(state, "where to? --db FILE is missing");
+        cp_args_need(state, options->db_path != NULL, "where to? --db FILE");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
+
+static const struct argp_child CHILDREN[] = {{&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
@@ -92,6 +102,7 @@ static const struct argp ARGP = {
            "that are done stay. The result does not depend on --jobs.\n\n"
            "Example:\n"
            "  crashpulse run sumo_scenarios/demo/study.yaml --db demo.db --jobs 2\n",
+    .children = CHILDREN,
 };
 
 // What of the crashes is not the drivers' doing, when that is not little, and what is not as
@@ -121,11 +132,13 @@ static cp_status warn_of_backgrounds(const char *db_path, cp_error *error)
 cp_status cmd_run(int argc, char **argv, cp_error *error)
 {
     long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    cp_runner_options options = {.jobs = processors > 0 ? (size_t)processors : 1, .progress = true};
-    cp_args_parse(&ARGP, argc, argv, &options);
+    arguments a = {.input = CP_ARGS_STUDY,
+                   .options = {.jobs = processors > 0 ? (size_t)processors : 1, .progress = true}};
+    cp_args_parse(&ARGP, argc, argv, &a);
+    a.options.study_path = a.input.path;
 
     cp_runner_summary summary = {0};
-    cp_status status = cp_runner_run(&options, &summary, error);
+    cp_status status = cp_runner_run(&a.options, &summary, error);
     if (summary.replications > 0)
         cp_log_info("%zu replications: %zu done before, %zu done now, %zu failed, %zu elsewhere; "
                     "%zu crash%s; %.1f s",
@@ -133,6 +146,6 @@ cp_status cmd_run(int argc, char **argv, cp_error *error)
                     summary.elsewhere, summary.crashes, summary.crashes == 1 ? "" : "es",
                     summary.wall_time_s);
     if (status == CP_OK)
-        status = warn_of_backgrounds(options.db_path, error);
+        status = warn_of_backgrounds(a.options.db_path, error);
     return status;
 }

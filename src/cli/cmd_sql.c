@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/query_json.h"
 #include "cli/args.h"
 #include "cli/commands.h"
+#include "core/installation.h"
 #include "core/log.h"
-#include "report/query_json.h"
 #include "store/query.h"
 
 #include <errno.h>
@@ -13,7 +14,7 @@
 #include <unistd.h>
 
 typedef struct arguments {
-    const char *db_path;
+    cp_args_input input;
     const char *query;
     cp_format format;
 } arguments;
@@ -24,22 +25,22 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &a->format;
+        state->child_inputs[1] = &a->input;
         return 0;
     case ARGP_KEY_ARG:
-        if (a->query)
+        if (a->input.path == NULL)
+            return ARGP_ERR_UNKNOWN;
+        if (a->query != NULL)
             argp_error(state, "one query at a time, found '%s' too", argument);
-        *(a->db_path ? &a->query : &a->db_path) = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!a->db_path)
-            argp_error(state, "which database? DB is missing");
+        a->query = argument;
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
 
-static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+static const struct argp_child CHILDREN[] = {
+    {&CP_ARGS_FORMAT, 0, NULL, 0}, {&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .parser = parse,
@@ -49,7 +50,7 @@ static const struct argp ARGP = {
            "\v"
            "Tables and views are described in db/schema and db/views.sql, questions others asked "
            "are in db/queries. The functions of the SQL extension are loaded: median, quantile, "
-           "cliffs_delta, ks_distance, olc, delta_v, peak, cfc, pulse_samples (README).\n\n"
+           "cliffs_delta, ks_distance, olc, delta_v, peak, cfc, pulse_samples (db/README.md).\n\n"
            "Examples:\n"
            "  crashpulse sql demo.db \"SELECT * FROM olc_by_variant\"\n"
            "  crashpulse sql demo.db -f csv \"SELECT * FROM frontal_vehicle\" > cars.csv\n"
@@ -73,18 +74,14 @@ static cp_status add_row(void *context, const cp_row *row, cp_error *error)
     return CP_OK;
 }
 
-// The extension beside the running executable; "" when it is not there.
+// The extension that belongs to the running executable; "" when it is not there.
 static void find_extension(char path[PATH_MAX])
 {
     static const char NAME[] = "crashpulse_sql.so";
-    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
-    path[length > 0 ? length : 0] = '\0';
-    char *slash = strrchr(path, '/');
-    size_t room = slash != NULL ? PATH_MAX - (size_t)(slash + 1 - path) : 0;
-    if (room > sizeof NAME)
-        memcpy(slash + 1, NAME, sizeof NAME);
-    if (room <= sizeof NAME || access(path, R_OK) != 0) {
-        cp_log_warning("%s is not beside crashpulse: its functions are missing", NAME);
+    cp_error error = {0};
+    if (cp_installation_find(CP_INSTALLED_LIBRARY, NAME, path, PATH_MAX, &error) != CP_OK ||
+        access(path, R_OK) != 0) {
+        cp_log_warning("%s is not where crashpulse is: its functions are missing", NAME);
         path[0] = '\0';
     }
 }
@@ -124,12 +121,12 @@ static cp_status print_query(cp_store *store, const arguments *a, cp_error *erro
 
 cp_status cmd_sql(int argc, char **argv, cp_error *error)
 {
-    arguments a = {0};
+    arguments a = {.input = CP_ARGS_DATABASE};
     cp_args_parse(&ARGP, argc, argv, &a);
 
     // Opened in both cases: a file that is no study's database is refused with one clear message.
     cp_store *store = NULL;
-    cp_status status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+    cp_status status = cp_store_open(a.input.path, CP_STORE_READ, &store, error);
     if (status != CP_OK)
         return status;
     char extension[PATH_MAX];
@@ -139,5 +136,5 @@ cp_status cmd_sql(int argc, char **argv, cp_error *error)
     if (a.query && status == CP_OK)
         status = print_query(store, &a, error);
     cp_store_close(store);
-    return a.query ? status : start_shell(a.db_path, extension, a.format, error);
+    return a.query ? status : start_shell(a.input.path, extension, a.format, error);
 }

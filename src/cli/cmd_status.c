@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "analysis/caveats.h"
+#include "analysis/network_background.h"
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/safe_text.h"
-#include "report/caveats.h"
-#include "report/network_background.h"
 #include "run/owner.h"
 #include "store/query.h"
 
@@ -12,32 +12,26 @@
 #include <string.h>
 
 typedef struct arguments {
-    const char *db_path;
+    cp_args_input input;
     cp_format format;
 } arguments;
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     arguments *a = state->input;
+    (void)argument;
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &a->format;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (a->db_path)
-            argp_error(state, "one database at a time, found '%s' too", argument);
-        a->db_path = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!a->db_path)
-            argp_error(state, "which database? DB is missing");
+        state->child_inputs[1] = &a->input;
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
 
-static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+static const struct argp_child CHILDREN[] = {
+    {&CP_ARGS_FORMAT, 0, NULL, 0}, {&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .parser = parse,
@@ -234,11 +228,11 @@ static cp_status print_caveats(cp_store *store, cp_error *error)
 
 cp_status cmd_status(int argc, char **argv, cp_error *error)
 {
-    arguments a = {0};
+    arguments a = {.input = CP_ARGS_DATABASE};
     cp_args_parse(&ARGP, argc, argv, &a);
 
     cp_store *store = NULL;
-    cp_status status = cp_store_open(a.db_path, CP_STORE_READ, &store, error);
+    cp_status status = cp_store_open(a.input.path, CP_STORE_READ, &store, error);
     if (status == CP_OK)
         status = print_progress(store, a.format, error);
     if (status == CP_OK && a.format == CP_FORMAT_TABLE)

@@ -2,6 +2,7 @@
 #include "cli/args.h"
 #include "cli/commands.h"
 #include "core/file.h"
+#include "core/installation.h"
 #include "core/log.h"
 #include "core/safe_text.h"
 #include "study/study_file.h"
@@ -17,17 +18,18 @@
 #include <unistd.h>
 
 typedef struct arguments {
-    const char *study_path;
+    cp_args_input input;
     const char *db_path;
     bool slurm;
     bool dry_run;
     long shards;
     long jobs;           /* worker processes of a task */
     bool free_outputs;   /* SUMO may write and connect where the scenarios say */
+    bool allow_plugins;  /* the study's libraries are loaded */
     const char *options; /* further words for sbatch */
 } arguments;
 
-enum { SLURM = 256, SHARDS, DRY_RUN, SBATCH, FREE_OUTPUTS };
+enum { SLURM = 256, SHARDS, DRY_RUN, SBATCH, FREE_OUTPUTS, ALLOW_PLUGINS };
 
 static const struct argp_option OPTIONS[] = {
     {"slurm", SLURM, NULL, 0, "submit to Slurm (sbatch); the only queue there is so far", 0},
@@ -38,6 +40,8 @@ static const struct argp_option OPTIONS[] = {
      0},
     {"allow-sumo-outputs", FREE_OUTPUTS, NULL, 0,
      "let SUMO write and connect wherever the scenarios say, as 'crashpulse run' with it", 0},
+    {"allow-plugins", ALLOW_PLUGINS, NULL, 0,
+     "load the libraries that the study names, as 'crashpulse run' with it", 0},
     {"dry-run", DRY_RUN, NULL, 0, "write the scripts, submit nothing", 0},
     {0},
 };
@@ -46,6 +50,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     arguments *a = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &a->input;
+        return 0;
     case SLURM:
         a->slurm = true;
         return 0;
@@ -61,29 +68,25 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case FREE_OUTPUTS:
         a->free_outputs = true;
         return 0;
+    case ALLOW_PLUGINS:
+        a->allow_plugins = true;
+        return 0;
     case SBATCH:
         a->options = argument;
         return 0;
     case DRY_RUN:
         a->dry_run = true;
         return 0;
-    case ARGP_KEY_ARG:
-        if (a->study_path)
-            argp_error(state, "one study file at a time, found '%s' too", argument);
-        a->study_path = argument;
-        return 0;
     case ARGP_KEY_END:
-        if (!a->study_path)
-            argp_error(state, "which study? STUDY.yaml is missing");
-        if (!a->slurm)
-            argp_error(state, "to which queue? --slurm is missing");
-        if (!a->db_path)
-            argp_error(state, "where to? --db FILE is missing");
+        cp_args_need(state, a->slurm, "to which queue? --slurm");
+        cp_args_need(state, a->db_path != NULL, "where to? --db FILE");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
+
+static const struct argp_child CHILDREN[] = {{&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
@@ -98,6 +101,7 @@ static const struct argp ARGP = {
            "Example:\n"
            "  crashpulse submit study.yaml --slurm --db study.db --shards 32 --jobs 4 \\\n"
            "      --sbatch '--partition=short --time=1:00:00'\n",
+    .children = CHILDREN,
 };
 
 // ---- the scripts ---------------------------------------------------------------------------
@@ -133,11 +137,9 @@ static cp_status absolute(const char *path, char result[PATH_MAX], cp_error *err
 
 static cp_status find_paths(const arguments *a, paths *p, cp_error *error)
 {
-    ssize_t length = readlink("/proc/self/exe", p->program, PATH_MAX - 1);
-    if (length < 0)
-        return cp_fail(error, CP_IO_FAILED, "/proc/self/exe: %s", strerror(errno));
-    p->program[length] = '\0';
-    cp_status status = absolute(a->study_path, p->study, error);
+    cp_status status = cp_installation_program(p->program, sizeof p->program, error);
+    if (status == CP_OK)
+        status = absolute(a->input.path, p->study, error);
     if (status == CP_OK)
         status = absolute(a->db_path, p->db, error);
     if (status != CP_OK)
@@ -176,9 +178,10 @@ static cp_status write_scripts(const arguments *a, const paths *p, cp_error *err
              "#SBATCH --ntasks=1 --cpus-per-task=%ld\n"
              "#SBATCH --output='%s/shard_%%a.log'\n"
              "exec '%s' run '%s' --db '%s'/shard_\"$SLURM_ARRAY_TASK_ID\".db \\\n"
-             "    --shard \"$SLURM_ARRAY_TASK_ID\"/%ld --jobs %ld%s\n",
+             "    --shard \"$SLURM_ARRAY_TASK_ID\"/%ld --jobs %ld%s%s\n",
              a->shards, a->jobs, p->folder, p->program, p->study, p->folder, a->shards, a->jobs,
-             a->free_outputs ? " --allow-sumo-outputs" : "");
+             a->free_outputs ? " --allow-sumo-outputs" : "",
+             a->allow_plugins ? " --allow-plugins" : "");
     cp_status status = write_script(p->array, text, error);
     snprintf(
         text, sizeof text,
@@ -232,13 +235,13 @@ static cp_status submit_both(const arguments *a, const paths *p, cp_error *error
 
 cp_status cmd_submit(int argc, char **argv, cp_error *error)
 {
-    arguments a = {.shards = 4, .jobs = 1};
+    arguments a = {.input = CP_ARGS_STUDY, .shards = 4, .jobs = 1};
     cp_args_parse(&ARGP, argc, argv, &a);
 
     // A study that does not load is not worth a place in the queue.
     cp_study study = {0};
     paths p;
-    cp_status status = cp_study_load(a.study_path, &study, error);
+    cp_status status = cp_study_load(a.input.path, &study, error);
     if (status != CP_OK)
         return status;
     cp_study_destroy(&study);

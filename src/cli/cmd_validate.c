@@ -6,6 +6,7 @@
 #include "cli/pulse_validation.h"
 #include "cli/suite_validation.h"
 #include "core/output_files.h"
+#include "crash/named_vehicle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,7 +14,7 @@
 #include <unistd.h>
 
 typedef struct arguments {
-    const char *vehicle_path;
+    cp_args_input input;        /* the vehicle */
     const char *reference_path; /* either this ... */
     cp_pulse_source pulse;      /* ... or its path ... */
     cp_suite_validation suite;  /* ... or its path */
@@ -74,7 +75,7 @@ static void read_channels(const char *text, cp_pulse_source *pulse, struct argp_
 
 static void check(const arguments *a, struct argp_state *state)
 {
-    if (a->suite.path != NULL && (a->vehicle_path != NULL || a->reference_path != NULL ||
+    if (a->suite.path != NULL && (a->input.path != NULL || a->reference_path != NULL ||
                                   a->pulse.path != NULL || a->curves_path != NULL))
         argp_error(state, "--suite names its vehicles and references itself; choose vehicles with "
                           "--vehicle");
@@ -83,10 +84,9 @@ static void check(const arguments *a, struct argp_state *state)
         argp_error(state, "--vehicle, --references and --cases go with --suite");
     if (a->suite.path != NULL)
         return;
-    if (a->vehicle_path == NULL)
-        argp_error(state, "which vehicle? VEHICLE.yaml is missing");
-    if (a->reference_path == NULL && a->pulse.path == NULL)
-        argp_error(state, "against what? --reference FILE.csv or --pulse PATH is missing");
+    cp_args_need(state, a->input.path != NULL, "which vehicle? VEHICLE");
+    cp_args_need(state, a->reference_path != NULL || a->pulse.path != NULL,
+                 "against what? --reference FILE.csv or --pulse PATH");
     if (a->reference_path != NULL && a->pulse.path != NULL)
         argp_error(state, "either --reference or --pulse, not both");
     if (a->pulse.path == NULL && (a->pulse.sensor_count > 0 || a->curves_path != NULL))
@@ -99,6 +99,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &a->format;
+        state->child_inputs[1] = &a->input;
         return 0;
     case 'r':
         a->reference_path = argument;
@@ -138,11 +139,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case 'j':
         a->threads = cp_args_integer(state, "--threads", argument, 1, 64);
         return 0;
-    case ARGP_KEY_ARG:
-        if (a->vehicle_path != NULL)
-            argp_error(state, "one vehicle at a time, found '%s' too", argument);
-        a->vehicle_path = argument;
-        return 0;
     case ARGP_KEY_END:
         check(a, state);
         return 0;
@@ -151,12 +147,13 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     }
 }
 
-static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+static const struct argp_child CHILDREN[] = {
+    {&CP_ARGS_FORMAT, 0, NULL, 0}, {&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
     .parser = parse,
-    .args_doc = "VEHICLE.yaml\n--suite FILE.yaml",
+    .args_doc = "VEHICLE\n--suite FILE.yaml",
     .doc = "Hold a vehicle model against reference OLC values: every configuration is simulated "
            "against the barrier of the vehicle file; errors are model minus reference, in g. Or "
            "against the pulse of one test at its speed. Or vehicles against all tests of a suite: "
@@ -286,7 +283,8 @@ static cp_status validate_olc(const arguments *a, const cp_vehicle_model *model,
 cp_status cmd_validate(int argc, char **argv, cp_error *error)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    arguments a = {.threads = cores > 0 && cores < 64 ? cores : 1,
+    arguments a = {.input = {.one = "vehicle"},
+                   .threads = cores > 0 && cores < 64 ? cores : 1,
                    .pulse = {.speed_km_h = NAN, .until_s = 0.12, .weight_1 = 1.0}};
     cp_args_parse(&ARGP, argc, argv, &a);
     if (a.suite.path != NULL) {
@@ -295,10 +293,10 @@ cp_status cmd_validate(int argc, char **argv, cp_error *error)
     }
 
     cp_vehicle_model model;
-    const char *const inputs[] = {a.vehicle_path, a.reference_path, a.pulse.path};
+    const char *const inputs[] = {a.input.path, a.reference_path, a.pulse.path};
     cp_status status = cp_output_files_check(&a.curves_path, 1, inputs, 3, error);
     if (status == CP_OK)
-        status = cp_vehicle_model_load(a.vehicle_path, &model, error);
+        status = cp_named_vehicle_load(NULL, a.input.path, &model, error);
     if (status != CP_OK)
         return status;
     return a.pulse.path != NULL

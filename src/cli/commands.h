@@ -6,7 +6,11 @@
 
 /* The commands. argv[0] is the command's name. Wrong arguments and --help end the program; what
  * fails later is returned, results go to stdout. */
+CP_MUST_CHECK cp_status cmd_init(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_doctor(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_reference(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_run(int argc, char **argv, cp_error *error);
+CP_MUST_CHECK cp_status cmd_matrix(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_plan(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_background(int argc, char **argv, cp_error *error);
 CP_MUST_CHECK cp_status cmd_assess(int argc, char **argv, cp_error *error);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/comparison_table.h"
 
+#include "analysis/quantity.h"
 #include "core/memory.h"
 #include "core/safe_text.h"
 #include "report/answer.h"
-#include "report/quantity.h"
 
 #include <math.h>
 #include <stdlib.h>

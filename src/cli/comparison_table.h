@@ -2,8 +2,8 @@
 #ifndef CLI_COMPARISON_TABLE_H
 #define CLI_COMPARISON_TABLE_H
 
+#include "analysis/figures.h"
 #include "cli/output.h"
-#include "report/comparison.h"
 
 /* A comparison for the terminal: one row a quantity, one column a variant, then the answer (NULL:
  * none). heading (NULL: none) comes first. */

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define NUMBER_COUNT 14
+#define NUMBER_COUNT 16
 
 /* A number of one vehicle: name in JSON and CSV, label and digits in the table. */
 typedef struct number {
@@ -35,9 +35,11 @@ static void numbers_of(const cp_crash_run *run, int role, number numbers[NUMBER_
         {"peak_g", "peak, CFC60, g", 1, s->peak_g},
         {"mean_g", "mean, g", 1, s->mean_g},
         {"max_50ms_g", "highest 50 ms mean, g", 1, s->max_50ms_g},
+        {"max_50ms_y_g", "  sideways, g", 1, s->max_50ms_y_g},
         {"asi_1", "ASI", 2, s->asi_1},
         {"t_v0_ms", "time of v = 0, ms", 1, s->t_v0_s * 1e3},
         {"crush_mm", "dynamic crush, mm", 0, run->result.crush_m[role] * 1e3},
+        {"intrusion_mm", "intrusion, mm", 0, run->result.struck[role].depth_m * 1e3},
         {"pdof_deg", "direction of force, deg", 1, cp_deg_from_rad(s->pdof_rad)},
         {"yaw_change_deg_s", "change of yaw rate, deg/s", 1, cp_deg_from_rad(s->yaw_change_rad_s)},
     };
@@ -61,10 +63,16 @@ static const char *olc_status(const cp_crash_run *run, int role)
 
 static const char *validity(const cp_crash_run *run, int role, char text[CP_VALIDITY_TEXT_SIZE])
 {
-    unsigned outside =
-        cp_validity(run->model[0], run->model[1], &run->configuration, &run->description, role);
+    unsigned outside = cp_validity(run->model[0], run->model[1], &run->configuration,
+                                   &run->description, role, NULL);
     outside |= cp_validity_of_meeting(run->result.touched, run->result.shift_m);
     return cp_validity_text(outside | (run->is_damaged ? CP_OUTSIDE_DAMAGED : 0), text);
+}
+
+// Where it was pushed in; of an undisturbed motion nowhere.
+static const char *intrusion_zone(const cp_crash_run *run, int role)
+{
+    return run->result.touched ? cp_struck_zone_text(run->result.struck[role].zone) : NULL;
 }
 
 static const char *role_text(int role)
@@ -88,6 +96,8 @@ static json_t *vehicle_json(const cp_crash_run *run, int role)
                                 validity(run, role, text), "olc_status", olc_status(run, role));
     for (size_t k = 0; k < NUMBER_COUNT; k++)
         json_object_set_new(vehicle, numbers[k].name, real_json(numbers[k].value));
+    const char *zone = intrusion_zone(run, role);
+    json_object_set_new(vehicle, "intrusion_zone", zone != NULL ? json_string(zone) : json_null());
     return vehicle;
 }
 
@@ -120,15 +130,16 @@ static json_t *run_json(const cp_crash_run *run)
 
 static cp_status print_csv(const cp_crash_run *run, FILE *file, cp_error *error)
 {
-    const char *column[5 + NUMBER_COUNT] = {"role", "name", "contact_side", "validity",
+    const char *column[6 + NUMBER_COUNT] = {"role", "name", "contact_side", "validity",
                                             "olc_status"};
     char text[CP_VALIDITY_TEXT_SIZE];
     number numbers[NUMBER_COUNT];
     numbers_of(run, 0, numbers);
     for (size_t k = 0; k < NUMBER_COUNT; k++)
         column[5 + k] = numbers[k].name;
+    column[5 + NUMBER_COUNT] = "intrusion_zone";
     cp_table table;
-    cp_table_begin(&table, column, 5 + NUMBER_COUNT);
+    cp_table_begin(&table, column, 6 + NUMBER_COUNT);
     for (int role = 0; role < run->result.vehicle_count; role++) {
         numbers_of(run, role, numbers);
         cp_table_text(&table, role_text(role));
@@ -138,6 +149,7 @@ static cp_status print_csv(const cp_crash_run *run, FILE *file, cp_error *error)
         cp_table_text(&table, olc_status(run, role));
         for (size_t k = 0; k < NUMBER_COUNT; k++)
             cp_table_real(&table, numbers[k].value);
+        cp_table_text(&table, intrusion_zone(run, role) != NULL ? intrusion_zone(run, role) : "");
     }
     cp_status status = cp_table_print(&table, CP_FORMAT_CSV, file, error);
     cp_table_destroy(&table);
@@ -187,6 +199,9 @@ static cp_status print_table(const cp_crash_run *run, FILE *file, cp_error *erro
         cp_table_text(&table, olc_status(run, role));
         numbers_of(run, role, numbers[role]);
     }
+    cp_table_text(&table, "intrusion at");
+    for (int role = 0; role < count; role++)
+        cp_table_text(&table, intrusion_zone(run, role) != NULL ? intrusion_zone(run, role) : "-");
     for (size_t k = 0; k < NUMBER_COUNT; k++) {
         cp_table_text(&table, numbers[0][k].label);
         for (int role = 0; role < count; role++) {

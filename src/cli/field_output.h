@@ -2,7 +2,7 @@
 #ifndef CLI_FIELD_OUTPUT_H
 #define CLI_FIELD_OUTPUT_H
 
-#include "report/field_comparison.h"
+#include "analysis/field_comparison.h"
 
 #include <stdio.h>
 

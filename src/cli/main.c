@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/commands.h"
+#include "cli/log_options.h"
 #include "core/log.h"
 #include "core/memory.h"
+#include "core/nearest.h"
 
 #include <errno.h>
 #include <jansson.h>
@@ -16,7 +18,11 @@ typedef struct command {
 } command;
 
 static const command COMMAND[] = {
+    {"init", cmd_init, "begin a study of a network"},
+    {"doctor", cmd_doctor, "see whether everything that is needed works"},
+    {"reference", cmd_reference, "what every key of the input files means"},
     {"run", cmd_run, "simulate a study: traffic, crashes, pulses, into a database"},
+    {"matrix", cmd_matrix, "run a function through a matrix of two-car encounters"},
     {"plan", cmd_plan, "show what a study would run"},
     {"background", cmd_background, "what contacts a network makes without driver errors"},
     {"assess", cmd_assess, "put ready collisions through the surrogate"},
@@ -51,7 +57,11 @@ static void print_help(FILE *file)
           "  crashpulse report study.db --output study.html\n"
           "  crashpulse sql study.db \"SELECT * FROM olc_by_variant\"\n\n"
           "'crashpulse COMMAND --help' explains a command. Results go to stdout, messages to\n"
-          "stderr. Exit code: 0 success, 1 failed run, 2 bad input.\n",
+          "stderr, without colours. Every command takes\n"
+          "  --quiet              warnings and errors only\n"
+          "  --verbose            details too: what is started, and how it ended\n"
+          "  --log-format FORMAT  messages as text or json (an object a line)\n"
+          "Exit code: 0 success, 1 failed run, 2 bad input.\n",
           file);
 }
 
@@ -60,8 +70,13 @@ static cp_status run_command(int argc, char **argv, cp_error *error)
     for (size_t k = 0; k < COMMAND_COUNT; k++)
         if (strcmp(argv[1], COMMAND[k].name) == 0)
             return COMMAND[k].run(argc - 1, argv + 1, error);
-    return cp_fail(error, CP_BAD_INPUT, "unknown %s '%s'; 'crashpulse --help' lists the commands",
-                   argv[1][0] == '-' ? "option" : "command", argv[1]);
+    const char *names[sizeof COMMAND / sizeof *COMMAND];
+    char meant[CP_NEAREST_TEXT_SIZE];
+    for (size_t k = 0; k < COMMAND_COUNT; k++)
+        names[k] = COMMAND[k].name;
+    return cp_fail(error, CP_BAD_INPUT, "unknown %s '%s'; 'crashpulse --help' lists the commands%s",
+                   argv[1][0] == '-' ? "option" : "command", argv[1],
+                   cp_nearest_text(argv[1], names, COMMAND_COUNT, meant));
 }
 
 int main(int argc, char **argv)
@@ -69,6 +84,7 @@ int main(int argc, char **argv)
     cp_error error = {0};
     cp_status status = CP_OK;
     json_set_alloc_funcs(cp_memory_for_json, free); // or fields would be missing without a word
+    cp_log_options_take(&argc, argv);
     if (argc < 2) {
         print_help(stderr);
         return cp_status_exit_code(CP_BAD_INPUT);

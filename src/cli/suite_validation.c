@@ -2,6 +2,7 @@
 #include "cli/suite_validation.h"
 
 #include "calibrate/scorecard.h"
+#include "calibrate/suite_file.h"
 #include "core/file.h"
 #include "crash/crash_simulation.h"
 

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "control/control_types.h"
+#include "control/function_host.h"
 
-#include "control/brake.h"
+#include "control/calm.h"
 #include "control/lookout.h"
-#include "core/units.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Automatic emergency braking. The request is made at the first instant inside the step at which a
  * known target is a threat (lookout.h); deceleration begins after sensor latency and dead time and
@@ -94,243 +92,139 @@ static const cp_control_parameter PARAMETERS[] = {
 
 /* The function in one car. */
 typedef struct aeb_car {
-    cp_braking braking;
-    cp_target_class class; /* of the threat it acts on */
-    bool has_cause;        /* that the study made */
-    bool is_false;         /* braking for nothing, until false_until_s */
+    bool is_requesting; /* from the request to the release */
+    double since_s;     /* instant of the request */
+    double start_s;     /* deceleration begins */
+    double calm_since_s;
+    bool is_false; /* braking for nothing, until false_until_s */
     double false_until_s;
     double next_false_s;      /* SUMO clock; 0: not drawn yet */
     uint64_t false_occasions; /* drawn so far */
 } aeb_car;
 
 typedef struct aeb {
-    const cp_traffic *traffic;
-    cp_lookout lookout;
-    cp_brake brake; /* but for its start */
+    const double *parameter;
+    cp_rng_key key;
     double delay_s; /* from the threat to the first deceleration */
     double release_ttc_s;
-    cp_vehicle_table cars; /* an aeb_car of each */
-    size_t activations;
-    size_t of_class[CP_TARGET_CLASSES];
-    size_t false_activations;
-    size_t without_error;
-    double braking_s;
 } aeb;
 
-static cp_status create(const cp_control_context *context, void **state, cp_error *error)
+static const char *create(const crashpulse_setup *setup, crashpulse_outlook *outlook, void **state)
 {
+    const double *parameter = setup->parameter;
     aeb *created = calloc(1, sizeof *created);
     if (!created)
-        return cp_fail_memory(error, "aeb");
-    const double *parameter = context->parameter;
-    double release_ttc_s = fmax(parameter[RELEASE_TTC_S], parameter[TTC_S]);
-    cp_lookout_settings settings = {
-        .sensor = {parameter[RANGE_M], cp_rad_from_deg(parameter[FIELD_OF_VIEW_DEG]),
-                   parameter[LATENCY_S]},
-        .confirmation_s = parameter[CONFIRMATION_S],
-        .detection_probability_1 = parameter[DETECTION_PROBABILITY_1],
-        .has_occlusion = parameter[OCCLUSION_1] >= 0.5,
-        .has_class = {[CP_TARGET_REAR_END] = parameter[REAR_END_1] >= 0.5,
-                      [CP_TARGET_ONCOMING] = parameter[ONCOMING_1] >= 0.5,
-                      [CP_TARGET_CROSSING] = parameter[CROSSING_1] >= 0.5,
-                      [CP_TARGET_TURNING] = parameter[TURNING_1] >= 0.5},
+        return "out of memory";
+    *created = (aeb){.parameter = parameter,
+                     .key = {setup->seed},
+                     .delay_s = setup->brake_delay_s,
+                     .release_ttc_s = fmax(parameter[RELEASE_TTC_S], parameter[TTC_S])};
+    *outlook = (crashpulse_outlook){
+        .horizon_s =
+            fmax(created->release_ttc_s, parameter[TTC_S] + parameter[CONFIRMATION_S] + 0.5),
         .ttc_s = parameter[TTC_S],
         .required_m_s2 = parameter[REQUIRED_M_S2],
-        .horizon_s = fmax(release_ttc_s, parameter[TTC_S] + parameter[CONFIRMATION_S] + 0.5),
-        .key = context->seed_key,
-        .view = context->view,
+        .has_class = {[CRASHPULSE_REAR_END] = parameter[REAR_END_1] >= 0.5,
+                      [CRASHPULSE_ONCOMING] = parameter[ONCOMING_1] >= 0.5,
+                      [CRASHPULSE_CROSSING] = parameter[CROSSING_1] >= 0.5,
+                      [CRASHPULSE_TURNING] = parameter[TURNING_1] >= 0.5},
     };
-    created->traffic = context->traffic;
-    created->lookout = cp_lookout_create(&settings, context->traffic);
-    created->cars = cp_vehicle_table_create(sizeof(aeb_car), NULL);
-    created->brake.jerk_m_s3 = parameter[JERK_M_S3];
-    created->brake.deceleration_m_s2 =
-        fmin(parameter[DECELERATION_M_S2], parameter[FRICTION_1] * CP_G0_M_S2);
-    created->delay_s = parameter[LATENCY_S] + parameter[DEAD_TIME_S];
-    created->release_ttc_s = release_ttc_s;
     *state = created;
-    return CP_OK;
+    return NULL;
 }
 
-static void destroy(void *state)
+static void begin(const aeb *self, aeb_car *car, double instant_s)
 {
-    aeb *self = state;
-    cp_lookout_destroy(&self->lookout);
-    cp_vehicle_table_destroy(&self->cars);
-    free(self);
-}
-
-static void request(aeb *self, aeb_car *car, double instant_s)
-{
-    cp_brake brake = self->brake;
-    brake.start_s = instant_s + self->delay_s;
-    cp_braking_begin(&car->braking, &brake);
+    car->is_requesting = true;
+    car->since_s = instant_s;
+    car->start_s = instant_s + self->delay_s;
+    car->calm_since_s = INFINITY;
 }
 
 // Seeded times of a Poisson process on SUMO's clock, whenever the car came and whatever the step.
-static bool is_false_alarm(aeb *self, const cp_control_context *context, uint32_t vehicle,
-                           aeb_car *car, double *instant_s)
+static bool is_false_alarm(const aeb *self, const crashpulse_view *view, aeb_car *car,
+                           double *instant_s)
 {
-    double rate_per_h = context->parameter[FALSE_ACTIVATIONS_PER_H];
-    double now_s = cp_traffic_time_s(self->traffic);
-    double before_s = now_s - cp_traffic_step_length_s(self->traffic);
+    double rate_per_h = self->parameter[FALSE_ACTIVATIONS_PER_H];
+    double before_s = view->time_s - view->step_s;
     if (rate_per_h <= 0.0)
         return false;
-    cp_rng_key key = cp_rng_key_text(context->seed_key, "false activation");
-    key = cp_rng_key_text(key, cp_traffic_vehicle_id(self->traffic, vehicle));
+    cp_rng_key key = cp_rng_key_text(cp_rng_key_text(self->key, "false activation"), view->id);
     while (car->next_false_s <= before_s)
         car->next_false_s += cp_rng_exponential(key, car->false_occasions++, 3600.0 / rate_per_h);
     *instant_s = car->next_false_s;
-    return car->next_false_s <= now_s;
+    return car->next_false_s <= view->time_s;
 }
 
 // Free driving: whether to request braking.
-static cp_status watch(aeb *self, const cp_control_context *context,
-                       const cp_vehicle_motion *motion, aeb_car *car, cp_error *error)
+static void watch(const aeb *self, aeb_car *car, const crashpulse_view *view,
+                  crashpulse_request *request)
 {
-    const double *parameter = context->parameter;
-    double speed_m_s = motion->after.speed_m_s, instant_s;
-    cp_threat threat;
-    bool found = false;
-    if (speed_m_s < parameter[SPEED_MIN_M_S] || speed_m_s > parameter[SPEED_MAX_M_S])
-        return CP_OK;
-    cp_status status = cp_lookout_threat(&self->lookout, motion, &found, &threat, error);
-    if (status != CP_OK)
-        return status;
-    if (found) {
-        request(self, car, threat.instant_s);
-        car->class = threat.class;
+    const double *parameter = self->parameter;
+    crashpulse_threat threat;
+    double instant_s;
+    if (view->speed_m_s < parameter[SPEED_MIN_M_S] || view->speed_m_s > parameter[SPEED_MAX_M_S])
+        return;
+    if (view->host->threat(view, &threat)) {
+        begin(self, car, threat.instant_s);
         car->is_false = false;
-        car->has_cause =
-            cp_controls_has_cause(context->controls, motion->after.vehicle, threat.vehicle);
-    } else if (is_false_alarm(self, context, motion->after.vehicle, car, &instant_s)) {
-        request(self, car, instant_s);
+        request->target = threat.id;
+    } else if (is_false_alarm(self, view, car, &instant_s)) {
+        begin(self, car, instant_s);
         car->is_false = true;
-        car->has_cause = false;
-        car->false_until_s = car->braking.brake.start_s + parameter[FALSE_DURATION_S];
+        car->false_until_s = car->start_s + parameter[FALSE_DURATION_S];
     }
-    return CP_OK;
 }
 
 // The request goes on, is withdrawn before deceleration has begun, or ends.
-static cp_status follow(aeb *self, const cp_control_context *context,
-                        const cp_vehicle_motion *motion, aeb_car *car, cp_error *error)
+static void follow(const aeb *self, aeb_car *car, const crashpulse_view *view)
 {
-    double now_s = cp_traffic_time_s(self->traffic);
-    cp_threat threat;
+    crashpulse_threat threat;
     if (car->is_false) {
-        car->braking.is_requesting = now_s < car->false_until_s;
-        return CP_OK;
+        car->is_requesting = view->time_s < car->false_until_s;
+        return;
     }
-    if (now_s < car->braking.brake.start_s)
-        return cp_lookout_threat(&self->lookout, motion, &car->braking.is_requesting, &threat,
-                                 error);
-    bool is_danger = false;
-    cp_status status = CP_OK;
-    if (motion->after.speed_m_s >= 0.1)
-        status =
-            cp_lookout_is_danger(&self->lookout, motion, self->release_ttc_s, &is_danger, error);
-    if (cp_braking_is_over(&car->braking, now_s, !is_danger, context->parameter[HOLD_S]))
-        car->braking.is_requesting = false;
-    return status;
-}
-
-static void count_activation(aeb *self, const aeb_car *car)
-{
-    self->activations++;
-    self->without_error += !car->has_cause;
-    if (car->is_false)
-        self->false_activations++;
-    else
-        self->of_class[car->class]++;
-}
-
-static cp_status step_car(aeb *self, const cp_control_context *context,
-                          const cp_vehicle_motion *motion, aeb_car *car, cp_error *error)
-{
-    // Too slow to act: nothing is looked for, which spares the queues at junctions.
-    if (!car->braking.is_requesting &&
-        motion->after.speed_m_s < context->parameter[SPEED_MIN_M_S]) {
-        cp_lookout_forget(&self->lookout, motion->after.vehicle);
-        return CP_OK;
+    if (view->time_s < car->start_s) {
+        car->is_requesting = view->host->threat(view, &threat);
+        return;
     }
-    cp_status status = cp_lookout_track(&self->lookout, motion, error);
-    if (status != CP_OK)
-        return status;
-    status = car->braking.is_requesting ? follow(self, context, motion, car, error)
-                                        : watch(self, context, motion, car, error);
-    if (status != CP_OK || !car->braking.is_requesting)
-        return status;
-    status = cp_acts_note(context->acts, motion->after.vehicle, CP_ACT_REQUEST,
-                          car->braking.brake.start_s - self->delay_s, error);
-    if (status != CP_OK)
-        return status;
-    bool was_braking = car->braking.is_braking;
-    status = cp_braking_command(&car->braking, self->traffic, motion, context->actuation, error);
-    if (car->braking.is_braking) {
-        self->braking_s += cp_traffic_step_length_s(self->traffic);
-        if (!was_braking)
-            count_activation(self, car);
-    }
-    return status;
+    bool is_danger = view->speed_m_s >= 0.1 && view->host->is_danger(view, self->release_ttc_s);
+    if (cp_is_calm_for(&car->calm_since_s, view->time_s, !is_danger, self->parameter[HOLD_S]))
+        car->is_requesting = false;
 }
 
-static cp_status step_equipped(void *state, const void *context, const cp_vehicle_motion *motion,
-                               cp_error *error)
-{
-    aeb *self = state;
-    void *car;
-    cp_status status = cp_vehicle_table_take(&self->cars, motion->after.vehicle, &car, error);
-    return status == CP_OK ? step_car(self, context, motion, car, error) : status;
-}
-
-static cp_status step(void *state, const cp_control_context *context, cp_error *error)
-{
-    aeb *self = state;
-    if (!cp_equipment_is_any(context->equipment))
-        return CP_OK;
-    cp_status status = cp_vehicle_table_prune(&self->cars, self->traffic, error);
-    if (status == CP_OK)
-        status = cp_lookout_step(&self->lookout, error);
-    return status == CP_OK ? cp_equipment_each(context->equipment, self->traffic, step_equipped,
-                                               self, context, error)
-                           : status;
-}
-
-static size_t counters(const void *state, const char **names, double *values, size_t room)
+static const char *step(void *state, void *item, const crashpulse_view *view,
+                        crashpulse_request *request)
 {
     const aeb *self = state;
-    const struct {
-        const char *name;
-        double value;
-    } rows[] = {
-        {"activations", (double)self->activations},
-        {"activations_rear_end", (double)self->of_class[CP_TARGET_REAR_END]},
-        {"activations_oncoming", (double)self->of_class[CP_TARGET_ONCOMING]},
-        {"activations_crossing", (double)self->of_class[CP_TARGET_CROSSING]},
-        {"activations_turning", (double)self->of_class[CP_TARGET_TURNING]},
-        {"activations_without_error", (double)self->without_error},
-        {"activations_for_nothing", (double)self->false_activations},
-        {"braking_s", self->braking_s},
-    };
-    size_t count = sizeof rows / sizeof *rows;
-    if (room < count)
-        return 0;
-    for (size_t k = 0; k < count; k++) {
-        names[k] = rows[k].name;
-        values[k] = rows[k].value;
+    aeb_car *car = item;
+    // Too slow to act: nothing is looked for, which spares the queues at junctions.
+    if (!car->is_requesting && view->speed_m_s < self->parameter[SPEED_MIN_M_S])
+        return NULL;
+    view->host->look(view, NULL);
+    if (car->is_requesting)
+        follow(self, car, view);
+    else
+        watch(self, car, view, request);
+    if (car->is_requesting) {
+        request->acceleration_m_s2 = -self->parameter[DECELERATION_M_S2];
+        request->since_s = car->since_s;
     }
-    return count;
+    return NULL;
 }
 
-const cp_control_type CP_CONTROL_AEB = {
-    .name = "aeb",
-    .kind = CP_CONTROL_FUNCTION,
+static const crashpulse_function AEB = {
+    .abi = CRASHPULSE_FUNCTION_ABI,
+    .does = CRASHPULSE_BRAKES,
     .what = "automatic emergency braking by time to collision and required deceleration",
     .parameters = PARAMETERS,
     .parameter_count = sizeof PARAMETERS / sizeof *PARAMETERS,
+    .car_size = sizeof(aeb_car),
     .create = create,
     .step = step,
-    .counters = counters,
-    .destroy = destroy,
+    .destroy = free,
 };
+
+CP_FUNCTION_TYPE(CP_CONTROL_AEB, "aeb", AEB, PARAMETERS,
+                 "automatic emergency braking by time to collision and required deceleration",
+                 false)

@@ -3,11 +3,23 @@
 
 #include <math.h>
 
+// From one level to another, up or down.
+static double changing_loss_m_s(const cp_brake *brake, double elapsed_s)
+{
+    double change_m_s2 = brake->deceleration_m_s2 - brake->from_m_s2;
+    double rise_s = fabs(change_m_s2) / brake->jerk_m_s3;
+    double rising_s = fmin(elapsed_s, rise_s), jerk_m_s3 = copysign(brake->jerk_m_s3, change_m_s2);
+    return brake->from_m_s2 * rising_s + 0.5 * jerk_m_s3 * rising_s * rising_s +
+           brake->deceleration_m_s2 * (elapsed_s - rising_s);
+}
+
 double cp_brake_speed_loss_m_s(const cp_brake *brake, double time_s)
 {
     double elapsed_s = time_s - brake->start_s;
     if (elapsed_s <= 0.0)
         return 0.0;
+    if (brake->from_m_s2 != 0.0)
+        return changing_loss_m_s(brake, elapsed_s);
     double rise_s = brake->deceleration_m_s2 / brake->jerk_m_s3;
     if (elapsed_s < rise_s)
         return 0.5 * brake->jerk_m_s3 * elapsed_s * elapsed_s;
@@ -16,15 +28,26 @@ double cp_brake_speed_loss_m_s(const cp_brake *brake, double time_s)
 
 double cp_brake_deceleration_m_s2(const cp_brake *brake, double time_s)
 {
-    return fmin(fmax(time_s - brake->start_s, 0.0) * brake->jerk_m_s3, brake->deceleration_m_s2);
+    double changed_m_s2 = fmax(time_s - brake->start_s, 0.0) * brake->jerk_m_s3;
+    return brake->deceleration_m_s2 >= brake->from_m_s2
+               ? fmin(brake->from_m_s2 + changed_m_s2, brake->deceleration_m_s2)
+               : fmax(brake->from_m_s2 - changed_m_s2, brake->deceleration_m_s2);
 }
 
 void cp_braking_begin(cp_braking *braking, const cp_brake *brake)
 {
-    *braking = (cp_braking){.is_requesting = true,
-                            .brake = *brake,
-                            .commanded_until_s = brake->start_s,
-                            .calm_since_s = INFINITY};
+    *braking =
+        (cp_braking){.is_requesting = true, .brake = *brake, .commanded_until_s = brake->start_s};
+}
+
+void cp_braking_change(cp_braking *braking, double now_s, double deceleration_m_s2)
+{
+    cp_brake *brake = &braking->brake;
+    if (now_s > brake->start_s) {
+        brake->from_m_s2 = cp_brake_deceleration_m_s2(brake, now_s);
+        brake->start_s = now_s;
+    }
+    brake->deceleration_m_s2 = deceleration_m_s2;
 }
 
 cp_status cp_braking_command(cp_braking *braking, const cp_traffic *traffic,
@@ -45,15 +68,4 @@ cp_status cp_braking_command(cp_braking *braking, const cp_traffic *traffic,
     return cp_actuation_request(actuation, motion->after.vehicle,
                                 fmax(motion->after.speed_m_s - loss_m_s, 0.0),
                                 cp_brake_deceleration_m_s2(&braking->brake, end_s), error);
-}
-
-bool cp_braking_is_over(cp_braking *braking, double now_s, bool is_calm, double hold_s)
-{
-    if (now_s < braking->brake.start_s)
-        return false;
-    if (!is_calm)
-        braking->calm_since_s = INFINITY;
-    else if (braking->calm_since_s == INFINITY)
-        braking->calm_since_s = now_s;
-    return is_calm && now_s - braking->calm_since_s >= hold_s;
 }

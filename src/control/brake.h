@@ -9,6 +9,7 @@ typedef struct cp_brake {
     double start_s;           /* when deceleration begins to rise */
     double jerk_m_s3;         /* rise, > 0 */
     double deceleration_m_s2; /* held at the end, > 0 */
+    double from_m_s2;         /* at the start: 0, but where another level was held before */
 } cp_brake;
 
 /* Speed taken away between start_s and time_s, m/s; 0 before. */
@@ -22,10 +23,12 @@ typedef struct cp_braking {
     bool is_braking;    /* deceleration has begun */
     cp_brake brake;
     double commanded_until_s; /* the speed loss up to here has been asked for */
-    double calm_since_s;      /* no danger, or standing, since then; INFINITY while in danger */
 } cp_braking;
 
 void cp_braking_begin(cp_braking *braking, const cp_brake *brake);
+
+/* Another level is asked for from now on; it is gone to with the same jerk. */
+void cp_braking_change(cp_braking *braking, double now_s, double deceleration_m_s2);
 
 /* Ask for the speed at the end of the coming step. What was lost of the first step between the
  * start of deceleration and the first command is caught up, so that the speed is the profile's at
@@ -33,8 +36,5 @@ void cp_braking_begin(cp_braking *braking, const cp_brake *brake);
 CP_MUST_CHECK cp_status cp_braking_command(cp_braking *braking, const cp_traffic *traffic,
                                            const cp_vehicle_motion *motion, cp_actuation *actuation,
                                            cp_error *error);
-
-/* Whether the car may go back to its driver: it stands or is in no danger, for hold_s. */
-bool cp_braking_is_over(cp_braking *braking, double now_s, bool is_calm, double hold_s);
 
 #endif

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define COUNTERS_MAX 16
+#define COUNTERS_MAX 40
 
 typedef struct active_control {
     double uncounted[COUNTERS_MAX]; /* its counters when the warm-up ended */
@@ -52,6 +52,11 @@ cp_control_settings cp_control_settings_default(const cp_control_type *type)
     return settings;
 }
 
+const char *cp_control_name(const cp_control_settings *settings)
+{
+    return settings->library != NULL ? settings->library->name : settings->type->name;
+}
+
 static cp_status check_ranges(const cp_control_settings *settings, cp_error *error)
 {
     const cp_control_type *type = settings->type;
@@ -85,16 +90,20 @@ static cp_status create_one(cp_controls *controls, active_control *active,
     active->acts = cp_acts_create(controls->traffic);
     active->context = (cp_control_context){
         .traffic = controls->traffic,
+        .settings = &active->settings,
         .ignored = controls->ignored,
         .view = controls->view,
         .controls = controls,
-        .seed_key = cp_rng_key_text(replication_key, settings->type->name),
+        .seed_key = cp_rng_key_text(replication_key, cp_control_name(settings)),
         .parameter = active->settings.parameter,
         .equipment = &active->equipment,
         .actuation = &controls->actuation,
         .acts = is_function ? &active->acts : NULL,
     };
-    return settings->type->create(&active->context, &active->state, error);
+    status = settings->type->create(&active->context, &active->state, error);
+    if (status != CP_OK && is_function)
+        cp_error_prefix(error, "%s: ", cp_control_name(settings));
+    return status;
 }
 
 static cp_status create_all(const cp_control_settings *settings, size_t count, uint64_t study_seed,
@@ -219,7 +228,7 @@ static cp_status step_one(cp_controls *controls, active_control *active, cp_erro
     if (status == CP_OK)
         status = type->step(active->state, &active->context, error);
     if (status != CP_OK)
-        cp_error_prefix(error, "%s: ", type->name);
+        cp_error_prefix(error, "%s: ", cp_control_name(&active->settings));
     return status;
 }
 
@@ -338,7 +347,7 @@ bool cp_controls_error_at(const cp_controls *controls, size_t number, uint32_t v
     if (!found)
         return false;
     *at = (cp_error_at){
-        .name = controls->active[control].settings.type->name,
+        .name = cp_control_name(&controls->active[control].settings),
         .towards = found->other == CP_EVERYBODY ? CP_TOWARDS_EVERYBODY
                    : found->other == opponent   ? CP_TOWARDS_OPPONENT
                                                 : CP_TOWARDS_ANOTHER,
@@ -354,7 +363,7 @@ cp_status cp_controls_function_at(cp_controls *controls, size_t number, uint32_t
                                   cp_error *error)
 {
     active_control *active = &controls->active[index_of(controls, CP_CONTROL_FUNCTION, number)];
-    *at = (cp_function_at){.name = active->settings.type->name,
+    *at = (cp_function_at){.name = cp_control_name(&active->settings),
                            .act = cp_acts_at(&active->acts, vehicle, instant_s, speed_m_s)};
     return cp_equipment_has(&active->equipment, controls->traffic, vehicle, &at->is_equipped,
                             error);
@@ -368,7 +377,7 @@ static bool add_counters(json_t *object, const active_control *active)
     const cp_control_type *type = active->settings.type;
     if (type->kind == CP_CONTROL_FUNCTION) {
         char key[128];
-        snprintf(key, sizeof key, "%s.equipped_vehicles", type->name);
+        snprintf(key, sizeof key, "%s.equipped_vehicles", cp_control_name(&active->settings));
         if (json_object_set_new(object, key, json_real((double)active->equipment.equipped)) != 0)
             return false;
     }
@@ -379,7 +388,7 @@ static bool add_counters(json_t *object, const active_control *active)
     size_t count = type->counters(active->state, names, values, COUNTERS_MAX);
     for (size_t k = 0; k < count; k++) {
         char key[128];
-        snprintf(key, sizeof key, "%s.%s", type->name, names[k]);
+        snprintf(key, sizeof key, "%s.%s", cp_control_name(&active->settings), names[k]);
         if (json_object_set_new(object, key, json_real(values[k] - active->uncounted[k])) != 0)
             return false;
     }

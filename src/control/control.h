@@ -2,16 +2,20 @@
 #ifndef CONTROL_CONTROL_H
 #define CONTROL_CONTROL_H
 
+#include "api/crashpulse/function.h"
 #include "control/acts.h"
 #include "control/actuation.h"
 #include "control/equipment.h"
 #include "control/error_log.h"
+#include "control/library.h"
 #include "core/rng.h"
 #include "traffic/traffic.h"
 
 /* What acts on vehicles besides SUMO's own driver: driver errors (baseline humans) and driver
- * assistance functions. All share one interface, listed in one table; another one is one file and
- * one row (README of this folder). Parameters are numbers with a unit in the name. */
+ * assistance functions. All share one table; another one is one file and one row (README of this
+ * folder). Functions decide by crashpulse/function.h, ours as those of a library that a study
+ * brings along, and function_host.h does the rest. Parameters are numbers with a unit in the name.
+ */
 
 typedef enum cp_control_kind {
     CP_CONTROL_DRIVER_ERROR, /* belongs to a scenario: drivers as they are */
@@ -19,13 +23,7 @@ typedef enum cp_control_kind {
 } cp_control_kind;
 
 /* One parameter of a control: name as in the study file ("ttc_s"), range, default and source. */
-typedef struct cp_control_parameter {
-    const char *name;
-    double standard;
-    double smallest;
-    double largest;
-    const char *what; /* with source, or the word "assumed" */
-} cp_control_parameter;
+typedef crashpulse_parameter cp_control_parameter;
 
 /* First parameter of every function: share of vehicles that have it (equipment.h). */
 #define CP_CONTROL_PENETRATION                                                                     \
@@ -40,6 +38,7 @@ typedef struct cp_control_parameter {
  * control's name: derive from it by vehicle ids and occasion only (core/rng.h). */
 typedef struct cp_control_context {
     const cp_traffic *traffic;
+    const struct cp_control_settings *settings;
     cp_rng_key seed_key;
     const double *parameter;         /* by index of the type's parameter table */
     cp_equipment *equipment;         /* of functions: who has it */
@@ -63,6 +62,9 @@ typedef struct cp_control_type {
     bool acts_long_before;
     const cp_control_parameter *parameters;
     size_t parameter_count;
+    /* Of a function what decides; NULL: a library that the settings name. create ... destroy are
+     * then those of function_host.h. */
+    const crashpulse_function *function;
     CP_MUST_CHECK cp_status (*create)(const cp_control_context *context, void **state,
                                       cp_error *error);
     /* After each traffic step; commands hold for the next one. */
@@ -95,9 +97,12 @@ typedef struct cp_control_settings {
     double parameter[CP_CONTROL_PARAMETERS_MAX];
     cp_equipment_share *shares; /* penetration by vehicle type; owned by the study */
     size_t share_count;
+    cp_library *library; /* of the type CP_CONTROL_PLUGIN; else NULL. Owned by the study */
 } cp_control_settings;
 
 cp_control_settings cp_control_settings_default(const cp_control_type *type);
+/* What it is called in tables and counters, and draws by: the library's name, else the type's. */
+const char *cp_control_name(const cp_control_settings *settings);
 
 /* All controls of one replication together. */
 typedef struct cp_controls cp_controls;
@@ -143,7 +148,7 @@ typedef enum cp_error_towards {
 
 /* One driver error of one driver. Times are before the instant. */
 typedef struct cp_error_at {
-    const char *name; /* of the control; static */
+    const char *name; /* of the control; as long as its settings */
     cp_error_towards towards;
     double began_s; /* the last time it began, to within a step; >= ended_s */
     double ended_s; /* 0 ... CP_ERROR_MEMORY_S; 0: at work */
@@ -152,7 +157,7 @@ typedef struct cp_error_at {
 
 /* One function in one car. */
 typedef struct cp_function_at {
-    const char *name; /* of the control; static */
+    const char *name; /* of the control; as long as its settings */
     bool is_equipped;
     cp_act_at act;
 } cp_function_at;

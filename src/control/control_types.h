@@ -26,7 +26,9 @@
     /* emergency lane keeping against drifting into oncoming traffic */                            \
     X(CP_CONTROL_ELK)                                                                              \
     /* intelligent speed assistance: limits the speed */                                           \
-    X(CP_CONTROL_ISA)
+    X(CP_CONTROL_ISA)                                                                              \
+    /* a function from a library that the study names */                                           \
+    X(CP_CONTROL_PLUGIN)
 
 #define CP_CONTROL_DECLARE(symbol) extern const cp_control_type symbol;
 CP_CONTROL_ROWS(CP_CONTROL_DECLARE)

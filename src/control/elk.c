@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "control/control_types.h"
+#include "control/function_host.h"
 
-#include "control/lookout.h"
+#include "core/geometry.h"
 #include "core/units.h"
+#include "traffic/lateral_overlay.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Emergency lane keeping against drifting into oncoming traffic. It watches cars that drift off
  * their path (traffic/lateral_overlay.h). When the side that drifts is about to cross the edge of
@@ -68,76 +68,41 @@ typedef struct elk_car {
 } elk_car;
 
 typedef struct elk {
-    const cp_traffic *traffic;
-    cp_lookout lookout;
-    cp_vehicle_table cars; /* an elk_car of each */
-    size_t interventions;
+    const double *parameter;
 } elk;
 
-static cp_status create(const cp_control_context *context, void **state, cp_error *error)
+static const char *create(const crashpulse_setup *setup, crashpulse_outlook *outlook, void **state)
 {
     elk *created = calloc(1, sizeof *created);
     if (!created)
-        return cp_fail_memory(error, "elk");
-    const double *parameter = context->parameter;
-    cp_lookout_settings settings = {
-        .sensor = {parameter[RANGE_M], cp_rad_from_deg(parameter[FIELD_OF_VIEW_DEG]),
-                   parameter[LATENCY_S]},
-        .confirmation_s = parameter[CONFIRMATION_S],
-        .detection_probability_1 = parameter[DETECTION_PROBABILITY_1],
-        .has_occlusion = parameter[OCCLUSION_1] >= 0.5,
-        .horizon_s = parameter[ONCOMING_S],
-        .key = context->seed_key,
-        .view = context->view,
-    };
-    created->traffic = context->traffic;
-    created->lookout = cp_lookout_create(&settings, context->traffic);
-    created->cars = cp_vehicle_table_create(sizeof(elk_car), NULL);
+        return "out of memory";
+    created->parameter = setup->parameter;
+    outlook->horizon_s = setup->parameter[ONCOMING_S];
     *state = created;
-    return CP_OK;
-}
-
-static void destroy(void *state)
-{
-    elk *self = state;
-    cp_lookout_destroy(&self->lookout);
-    cp_vehicle_table_destroy(&self->cars);
-    free(self);
+    return NULL;
 }
 
 // Time until the drifting side crosses the edge of its lane, negative since when; INFINITY when the
 // car does not drift outwards. The path is taken to be the middle of the lane.
-static cp_status line_crossing(const elk *self, const cp_vehicle_motion *motion,
-                               cp_lateral_overlay overlay, double *crossing_s, cp_error *error)
+static double line_crossing_s(const crashpulse_view *view)
 {
-    double outwards_m_s = overlay.slope_1 * motion->after.speed_m_s, width_m;
-    *crossing_s = INFINITY;
-    if (outwards_m_s == 0.0 || outwards_m_s * overlay.offset_m < 0.0)
-        return CP_OK;
-    cp_status status = cp_traffic_lane_width(self->traffic, &motion->after, &width_m, error);
-    double margin_m = 0.5 * (width_m - motion->after.width_m);
-    *crossing_s = (margin_m - fabs(overlay.offset_m)) / fabs(outwards_m_s);
-    return status;
+    double outwards_m_s = view->drift_1 * view->speed_m_s;
+    if (outwards_m_s == 0.0 || outwards_m_s * view->drift_m < 0.0)
+        return INFINITY;
+    double margin_m = 0.5 * (view->host->lane_width_m(view) - view->width_m);
+    return (margin_m - fabs(view->drift_m)) / fabs(outwards_m_s);
 }
 
 // Whether the drift leads to the side on which a known oncoming vehicle is about to pass.
-static bool is_oncoming(const elk *self, const cp_control_context *context,
-                        const cp_vehicle_motion *own, double drift_1)
+static bool is_oncoming(const elk *self, const crashpulse_view *view,
+                        const crashpulse_object *objects, size_t count)
 {
-    cp_vec2 axis = cp_vec2_heading(own->after.yaw_rad);
-    const cp_tracks tracks = cp_lookout_tracks_of(&self->lookout, own->after.vehicle);
-    for (size_t k = 0; k < tracks.count; k++) {
-        const cp_vehicle_motion *other =
-            cp_traffic_motion_of(self->traffic, tracks.track[k].vehicle);
-        if (!other || !cp_lookout_is_known(&self->lookout, &tracks.track[k]))
-            continue;
-        double apart_rad = fabs(cp_wrap_angle(other->after.yaw_rad - own->after.yaw_rad));
-        cp_vec2 there_m = {other->after.front_x_m - own->after.front_x_m,
-                           other->after.front_y_m - own->after.front_y_m};
-        double ahead_m = cp_vec2_dot(there_m, axis), left_m = cp_vec2_cross(axis, there_m);
-        double closing_m_s = own->after.speed_m_s + other->after.speed_m_s;
-        if (apart_rad > 0.75 * CP_PI && ahead_m > 0.0 && left_m * drift_1 > 0.0 &&
-            ahead_m < closing_m_s * context->parameter[ONCOMING_S])
+    for (size_t k = 0; k < count; k++) {
+        const crashpulse_object *other = &objects[k];
+        double closing_m_s = view->speed_m_s + other->speed_m_s;
+        if (fabs(other->heading_rad) > 0.75 * CP_PI && other->ahead_m > 0.0 &&
+            other->left_m * view->drift_1 > 0.0 &&
+            other->ahead_m < closing_m_s * self->parameter[ONCOMING_S])
             return true;
     }
     return false;
@@ -159,121 +124,71 @@ static double return_way_m(cp_lateral_overlay overlay, double speed_m_s, double 
     return way_m;
 }
 
-static cp_status watch(elk *self, const cp_control_context *context,
-                       const cp_vehicle_motion *motion, cp_lateral_overlay overlay, elk_car *car,
-                       cp_error *error)
+static void watch(const elk *self, elk_car *car, const crashpulse_view *view)
 {
-    const double *parameter = context->parameter;
-    double speed_m_s = motion->after.speed_m_s;
-    double crossing_s;
-    cp_status status = line_crossing(self, motion, overlay, &crossing_s, error);
-    if (status != CP_OK || speed_m_s < parameter[SPEED_MIN_M_S] ||
-        speed_m_s > parameter[SPEED_MAX_M_S] || !(crossing_s < parameter[LINE_CROSSING_S]) ||
-        !is_oncoming(self, context, motion, overlay.slope_1))
-        return status;
+    const double *parameter = self->parameter;
+    const crashpulse_object *objects;
+    size_t count = view->host->look(view, &objects);
+    double crossing_s = line_crossing_s(view);
+    if (view->speed_m_s < parameter[SPEED_MIN_M_S] || view->speed_m_s > parameter[SPEED_MAX_M_S] ||
+        !(crossing_s < parameter[LINE_CROSSING_S]) || !is_oncoming(self, view, objects, count))
+        return;
     // It falls by a second each second: the threshold was crossed inside the step.
-    double back_s =
-        fmin(parameter[LINE_CROSSING_S] - crossing_s, cp_traffic_step_length_s(self->traffic));
+    double back_s = fmin(parameter[LINE_CROSSING_S] - crossing_s, view->step_s);
     car->phase = REQUESTING;
-    car->steer_from_s =
-        cp_traffic_time_s(self->traffic) - back_s + parameter[LATENCY_S] + parameter[DEAD_TIME_S];
-    return CP_OK;
+    car->steer_from_s = view->time_s - back_s + parameter[LATENCY_S] + parameter[DEAD_TIME_S];
 }
 
-static cp_status steer(elk *self, const cp_control_context *context,
-                       const cp_vehicle_motion *motion, elk_car *car, cp_error *error)
+static void steer(const elk *self, elk_car *car, const crashpulse_view *view,
+                  crashpulse_request *request)
 {
-    cp_lateral_overlays *overlays = cp_traffic_overlays(self->traffic);
-    uint32_t vehicle = motion->after.vehicle;
-    double speed_m_s = motion->after.speed_m_s, mean_slope_1, end_slope_1;
-    cp_lateral_overlay now = cp_lateral_overlay_get(overlays, vehicle);
+    cp_lateral_overlay now = {view->drift_m, view->drift_1};
+    request->steer_since_s = car->steer_from_s;
     if (car->phase == REQUESTING) {
         car->phase = STEERING;
         car->return_left_m =
-            return_way_m(now, speed_m_s, context->parameter[LATERAL_ACCELERATION_M_S2]);
-        self->interventions++;
+            return_way_m(now, view->speed_m_s, self->parameter[LATERAL_ACCELERATION_M_S2]);
     }
     if (car->return_left_m <= 0.0) {
-        cp_lateral_overlay_end(overlays, vehicle);
+        request->is_back = true;
         car->phase = WATCHING;
-        return CP_OK;
+        return;
     }
-    double way_m = speed_m_s * cp_traffic_step_length_s(self->traffic);
-    cp_lateral_overlay_return(now, car->return_left_m, way_m, &mean_slope_1, &end_slope_1);
+    double way_m = view->speed_m_s * view->step_s;
+    cp_lateral_overlay_return(now, car->return_left_m, way_m, &request->steer_mean_1,
+                              &request->steer_end_1);
     car->return_left_m -= way_m;
-    return cp_lateral_overlay_steer(overlays, vehicle, mean_slope_1, end_slope_1, error);
 }
 
-// Instant of the request.
-static double requested_s(const cp_control_context *context, const elk_car *car)
-{
-    return car->steer_from_s - context->parameter[LATENCY_S] - context->parameter[DEAD_TIME_S];
-}
-
-static cp_status step_car(elk *self, const cp_control_context *context,
-                          const cp_vehicle_motion *motion, elk_car *car, cp_error *error)
-{
-    cp_status status = CP_OK;
-    cp_lateral_overlay overlay =
-        cp_lateral_overlay_get(cp_traffic_overlays(self->traffic), motion->after.vehicle);
-    if (car->phase == WATCHING && overlay.slope_1 == 0.0) {
-        cp_lookout_forget(&self->lookout, motion->after.vehicle);
-    } else if (car->phase == WATCHING) {
-        status = cp_lookout_track(&self->lookout, motion, error);
-        if (status == CP_OK)
-            status = watch(self, context, motion, overlay, car, error);
-    }
-    double end_s = cp_traffic_time_s(self->traffic) + cp_traffic_step_length_s(self->traffic);
-    bool is_steering = car->phase != WATCHING && car->steer_from_s < end_s;
-    if (status == CP_OK && car->phase != WATCHING)
-        status = cp_acts_note(context->acts, motion->after.vehicle,
-                              is_steering ? CP_ACT_STEERING : CP_ACT_REQUEST,
-                              is_steering ? car->steer_from_s : requested_s(context, car), error);
-    if (status == CP_OK && is_steering)
-        status = steer(self, context, motion, car, error);
-    return status;
-}
-
-static cp_status step_equipped(void *state, const void *context, const cp_vehicle_motion *motion,
-                               cp_error *error)
-{
-    elk *self = state;
-    void *car;
-    cp_status status = cp_vehicle_table_take(&self->cars, motion->after.vehicle, &car, error);
-    return status == CP_OK ? step_car(self, context, motion, car, error) : status;
-}
-
-static cp_status step(void *state, const cp_control_context *context, cp_error *error)
-{
-    elk *self = state;
-    if (!cp_equipment_is_any(context->equipment))
-        return CP_OK;
-    cp_status status = cp_vehicle_table_prune(&self->cars, self->traffic, error);
-    if (status == CP_OK)
-        status = cp_lookout_step(&self->lookout, error);
-    return status == CP_OK ? cp_equipment_each(context->equipment, self->traffic, step_equipped,
-                                               self, context, error)
-                           : status;
-}
-
-static size_t counters(const void *state, const char **names, double *values, size_t room)
+static const char *step(void *state, void *item, const crashpulse_view *view,
+                        crashpulse_request *request)
 {
     const elk *self = state;
-    if (room < 1)
-        return 0;
-    names[0] = "interventions";
-    values[0] = (double)self->interventions;
-    return 1;
+    elk_car *car = item;
+    // Nobody is looked for while the car does not drift.
+    if (car->phase == WATCHING && view->drift_1 != 0.0)
+        watch(self, car, view);
+    if (car->phase == WATCHING)
+        return NULL;
+    if (car->steer_from_s < view->time_s + view->step_s)
+        steer(self, car, view, request);
+    else // instant of the request
+        request->announced_s =
+            car->steer_from_s - self->parameter[LATENCY_S] - self->parameter[DEAD_TIME_S];
+    return NULL;
 }
 
-const cp_control_type CP_CONTROL_ELK = {
-    .name = "elk",
-    .kind = CP_CONTROL_FUNCTION,
+static const crashpulse_function ELK = {
+    .abi = CRASHPULSE_FUNCTION_ABI,
+    .does = CRASHPULSE_STEERS,
     .what = "emergency lane keeping against drifting into oncoming traffic",
     .parameters = PARAMETERS,
     .parameter_count = sizeof PARAMETERS / sizeof *PARAMETERS,
+    .car_size = sizeof(elk_car),
     .create = create,
     .step = step,
-    .counters = counters,
-    .destroy = destroy,
+    .destroy = free,
 };
+
+CP_FUNCTION_TYPE(CP_CONTROL_ELK, "elk", ELK, PARAMETERS,
+                 "emergency lane keeping against drifting into oncoming traffic", false)

@@ -51,7 +51,7 @@ cp_status cp_neighbourhood_fill(cp_neighbourhood *neighbourhood, double cell_m,
     neighbourhood->cell_m = cell_m;
     neighbourhood->motions = motions;
     for (size_t k = 0; k < neighbourhood->buckets; k++)
-        neighbourhood->first[k] = SUMO_BRIDGE_NONE;
+        neighbourhood->first[k] = CP_NO_NUMBER;
     for (size_t k = 0; k < count; k++) {
         const cp_vehicle_state *state = &motions[k].after;
         size_t bucket =
@@ -88,7 +88,7 @@ void cp_neighbourhood_visit(const cp_neighbourhood *neighbourhood, double x_m, d
         for (int64_t dy = -1; dy <= 1; dy++) {
             cell at = {centre.x + dx, centre.y + dy};
             uint32_t row = neighbourhood->first[bucket_of(neighbourhood, at)];
-            while (row != SUMO_BRIDGE_NONE) {
+            while (row != CP_NO_NUMBER) {
                 const cp_neighbour *own = &neighbourhood->neighbour[row];
                 double apart_x_m = own->x_m - x_m, apart_y_m = own->y_m - y_m;
                 // Two cells can share a bucket: the cell is compared, so that none comes twice.

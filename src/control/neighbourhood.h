@@ -15,7 +15,7 @@ typedef struct cp_neighbour {
 typedef struct cp_neighbourhood {
     double cell_m;
     const cp_vehicle_motion *motions; /* borrowed until the next fill */
-    uint32_t *first;                  /* by bucket: row of the first vehicle, or SUMO_BRIDGE_NONE */
+    uint32_t *first;                  /* by bucket: row of the first vehicle, or CP_NO_NUMBER */
     cp_neighbour *neighbour;          /* by row */
     size_t buckets;                   /* power of two */
     size_t capacity;                  /* of neighbour */

@@ -2,6 +2,7 @@
 #include "control/ttc.h"
 
 #include "core/units.h"
+#include "traffic/vehicle_rectangle.h"
 
 bool cp_turns_too_fast(const cp_vehicle_motion *motion)
 {
@@ -12,10 +13,8 @@ cp_moving_rectangle cp_moving_rectangle_of(const cp_vehicle_motion *motion)
 {
     const cp_vehicle_state *state = &motion->after;
     cp_vec2 heading = cp_vec2_heading(state->yaw_rad);
-    cp_vec2 front_m = {state->front_x_m, state->front_y_m};
     cp_moving_rectangle moving = {
-        .rectangle = {cp_vec2_sub(front_m, cp_vec2_scale(heading, 0.5 * state->length_m)),
-                      state->yaw_rad, state->length_m, state->width_m},
+        .rectangle = cp_vehicle_rectangle(state),
         .velocity_m_s = cp_vec2_scale(heading, state->speed_m_s),
         .yaw_rate_rad_s = motion->yaw_rate_rad_s,
     };

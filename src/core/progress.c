@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/progress.h"
 
+#include "core/log.h"
+
 #include <stdio.h>
 #include <time.h>
 #include <unistd.h>
@@ -17,7 +19,8 @@ void cp_progress_begin(cp_progress *progress, const char *label, size_t total)
     *progress = (cp_progress){.label = label,
                               .total = total,
                               .started_s = cp_clock_s(),
-                              .terminal = isatty(STDERR_FILENO) != 0,
+                              .terminal = isatty(STDERR_FILENO) != 0 && !cp_log_is_json() &&
+                                          !cp_log_is_quiet(),
                               .last_tenth = -1};
     cp_progress_update(progress, 0, NULL);
 }
@@ -36,7 +39,7 @@ static void format_time_left(const cp_progress *progress, char *text, size_t siz
 void cp_progress_update(cp_progress *progress, size_t done, const char *detail)
 {
     progress->done = done;
-    if (progress->total == 0)
+    if (progress->total == 0 || cp_log_is_quiet())
         return;
     int tenth = (int)(10 * done / progress->total);
     if (!progress->terminal && tenth == progress->last_tenth)
@@ -45,7 +48,10 @@ void cp_progress_update(cp_progress *progress, size_t done, const char *detail)
 
     char time_left[32];
     format_time_left(progress, time_left, sizeof time_left);
-    if (progress->terminal) {
+    if (cp_log_is_json()) {
+        cp_log_info("%s %zu/%zu  %s  %s", progress->label, done, progress->total, time_left,
+                    detail != NULL ? detail : "");
+    } else if (progress->terminal) {
         char bar[31] = "..............................";
         for (size_t k = 0; k < 30 * done / progress->total; k++)
             bar[k] = '#';

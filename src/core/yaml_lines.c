@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/yaml_lines.h"
 
+#include "core/array.h"
+
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,9 +34,10 @@ typedef struct collection {
 
 // Where the walk over libyaml's events stands.
 typedef struct line_walk {
-    cp_yaml_file *file;
+    const char *name;
+    cp_yaml_line *lines;
+    size_t line_count;
     cp_error *error;
-    size_t capacity;
     anchor *anchors;
     size_t anchor_count;
     size_t documents;
@@ -43,7 +48,7 @@ typedef struct line_walk {
 
 static cp_status fail_at(const line_walk *walk, size_t line, const char *what, const char *name)
 {
-    return cp_fail(walk->error, CP_BAD_INPUT, "%s:%zu: %s%s", walk->file->path, line, what, name);
+    return cp_fail(walk->error, CP_BAD_INPUT, "%s:%zu: %s%s", walk->name, line, what, name);
 }
 
 // Path of the value that begins now: the open collections' path and the present key or index.
@@ -64,27 +69,16 @@ static void extend_path(line_walk *walk)
 
 static cp_status remember_line(line_walk *walk, const char *path, size_t line, const char *scalar)
 {
-    cp_yaml_file *file = walk->file;
-    if (file->line_count == LINES_MAX)
+    if (walk->line_count == LINES_MAX)
         return fail_at(walk, line, "the file holds more than 100,000 values, aliases written out",
                        "");
-    if (file->line_count == walk->capacity) {
-        size_t capacity = walk->capacity == 0 ? 64 : 2 * walk->capacity;
-        cp_yaml_line *lines = realloc(file->lines, capacity * sizeof *lines);
-        if (lines == NULL)
-            return cp_fail_memory(walk->error, file->path);
-        file->lines = lines;
-        walk->capacity = capacity;
-    }
-    cp_yaml_line entry = {
+    cp_yaml_line *entry = cp_array_add(walk->lines, walk->line_count);
+    if (entry == NULL)
+        return cp_fail_memory(walk->error, walk->name);
+    *entry = (cp_yaml_line){
         .path = strdup(path), .scalar = scalar != NULL ? strdup(scalar) : NULL, .line = line};
-    if (entry.path == NULL || (scalar != NULL && entry.scalar == NULL)) {
-        free(entry.path);
-        free(entry.scalar);
-        return cp_fail_memory(walk->error, file->path);
-    }
-    file->lines[file->line_count++] = entry;
-    return CP_OK;
+    bool complete = entry->path != NULL && (scalar == NULL || entry->scalar != NULL);
+    return complete ? CP_OK : cp_fail_memory(walk->error, walk->name);
 }
 
 // After a value: a mapping expects a key again, a sequence counts on.
@@ -104,15 +98,14 @@ static cp_status begin_anchor(line_walk *walk, const yaml_char_t *name, size_t *
     *index = NO_ANCHOR;
     if (name == NULL)
         return CP_OK;
-    anchor *more = realloc(walk->anchors, (walk->anchor_count + 1) * sizeof *more);
-    if (more == NULL)
-        return cp_fail_memory(walk->error, walk->file->path);
-    walk->anchors = more;
-    more[walk->anchor_count] = (anchor){
-        .name = strdup((const char *)name), .first = walk->file->line_count, .is_open = true};
-    if (more[walk->anchor_count].name == NULL)
-        return cp_fail_memory(walk->error, walk->file->path);
-    *index = walk->anchor_count++;
+    anchor *added = cp_array_add(walk->anchors, walk->anchor_count);
+    if (added == NULL)
+        return cp_fail_memory(walk->error, walk->name);
+    *added =
+        (anchor){.name = strdup((const char *)name), .first = walk->line_count, .is_open = true};
+    if (added->name == NULL)
+        return cp_fail_memory(walk->error, walk->name);
+    *index = walk->anchor_count - 1;
     return CP_OK;
 }
 
@@ -120,7 +113,7 @@ static void end_anchor(line_walk *walk, size_t index)
 {
     if (index == NO_ANCHOR)
         return;
-    walk->anchors[index].count = walk->file->line_count - walk->anchors[index].first;
+    walk->anchors[index].count = walk->line_count - walk->anchors[index].first;
     walk->anchors[index].is_open = false;
 }
 
@@ -136,12 +129,11 @@ static cp_status take_alias(line_walk *walk, const char *name, size_t line)
     if (meant->is_open)
         return fail_at(walk, line, "an alias must not stand inside what it stands for: *", name);
     extend_path(walk);
-    size_t prefix = strlen(walk->file->lines[meant->first].path);
+    size_t prefix = strlen(walk->lines[meant->first].path);
     for (size_t i = meant->first; i < meant->first + meant->count; i++) {
         char path[2 * PATH_MAX_CHARACTERS];
-        snprintf(path, sizeof path, "%s%s", walk->path, walk->file->lines[i].path + prefix);
-        cp_status status =
-            remember_line(walk, path, walk->file->lines[i].line, walk->file->lines[i].scalar);
+        snprintf(path, sizeof path, "%s%s", walk->path, walk->lines[i].path + prefix);
+        cp_status status = remember_line(walk, path, walk->lines[i].line, walk->lines[i].scalar);
         if (status != CP_OK)
             return status;
     }
@@ -245,20 +237,23 @@ static cp_status take_event(line_walk *walk, const yaml_event_t *event)
     }
 }
 
-cp_status cp_yaml_lines_read(cp_yaml_file *file, const char *content, size_t size, cp_error *error)
+cp_status cp_yaml_lines_read(const char *name, const char *content, size_t size,
+                             cp_yaml_line **lines, size_t *count, cp_error *error)
 {
     yaml_parser_t parser;
+    *lines = NULL;
+    *count = 0;
     if (!yaml_parser_initialize(&parser))
-        return cp_fail_memory(error, file->path);
+        return cp_fail_memory(error, name);
     yaml_parser_set_input_string(&parser, (const unsigned char *)content, size);
-    line_walk walk = {.file = file, .error = error};
+    line_walk walk = {.name = name, .error = error};
     cp_status status = CP_OK;
     bool ended = false;
     while (status == CP_OK && !ended) {
         yaml_event_t event;
         if (!yaml_parser_parse(&parser, &event)) {
             if (parser.error == YAML_MEMORY_ERROR)
-                status = cp_fail_memory(error, file->path);
+                status = cp_fail_memory(error, name);
             break;
         }
         status = take_event(&walk, &event);
@@ -269,5 +264,16 @@ cp_status cp_yaml_lines_read(cp_yaml_file *file, const char *content, size_t siz
     for (size_t k = 0; k < walk.anchor_count; k++)
         free(walk.anchors[k].name);
     free(walk.anchors);
+    *lines = walk.lines;
+    *count = walk.line_count;
     return status;
+}
+
+void cp_yaml_lines_destroy(cp_yaml_line *lines, size_t count)
+{
+    for (size_t k = 0; k < count; k++) {
+        free(lines[k].path);
+        free(lines[k].scalar);
+    }
+    free(lines);
 }

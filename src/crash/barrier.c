@@ -21,6 +21,39 @@ cp_outline cp_barrier_outline(const cp_barrier *barrier, cp_pose pose)
         .radius_m = fmin(barrier->corner_radius_m, 0.5 * fmin(barrier->width_m, barrier->depth_m))};
 }
 
+bool cp_barrier_is_party(const cp_barrier *barrier)
+{
+    return barrier->mass_kg > 0.0 || barrier->face_m > 0.0;
+}
+
+static cp_status check_party(const cp_barrier *barrier, cp_error *error)
+{
+    if (barrier->mass_kg != 0.0 && !(barrier->mass_kg >= 200.0 && barrier->mass_kg <= 1e5))
+        return cp_fail(error, CP_BAD_INPUT,
+                       "barrier mass_kg must be 0 (fixed) or between 200 and 100000, found %g",
+                       barrier->mass_kg);
+    if (barrier->face_m == 0.0)
+        return CP_OK;
+    if (!(barrier->face_m >= 0.1 && barrier->face_m <= 0.8 * barrier->depth_m))
+        return cp_fail(error, CP_BAD_INPUT,
+                       "barrier face_m must be 0 (rigid) or between 0.1 and 80 %% of depth_m = %g, "
+                       "found %g",
+                       barrier->depth_m, barrier->face_m);
+    if (!(barrier->face_kn >= 5.0 && barrier->face_kn <= 5000.0))
+        return cp_fail(error, CP_BAD_INPUT, "barrier face_kn must be between 5 and 5000, found %g",
+                       barrier->face_kn);
+    if (!(barrier->face_bumper_m >= 0.0 && barrier->face_bumper_m <= barrier->face_m - 0.06))
+        return cp_fail(error, CP_BAD_INPUT,
+                       "barrier face_bumper_m must be between 0 and face_m - 0.06 = %g, found %g",
+                       barrier->face_m - 0.06, barrier->face_bumper_m);
+    if (barrier->face_bumper_m > 0.0 &&
+        !(barrier->face_bumper_kn >= 5.0 && barrier->face_bumper_kn <= 5000.0))
+        return cp_fail(error, CP_BAD_INPUT,
+                       "barrier face_bumper_kn must be between 5 and 5000, found %g",
+                       barrier->face_bumper_kn);
+    return CP_OK;
+}
+
 cp_status cp_barrier_validate(const cp_barrier *barrier, cp_error *error)
 {
     if (!(barrier->width_m >= 0.2 && barrier->width_m <= 20.0))
@@ -38,5 +71,5 @@ cp_status cp_barrier_validate(const cp_barrier *barrier, cp_error *error)
     if (!(fabs(barrier->pivot_m) <= 3.0))
         return cp_fail(error, CP_BAD_INPUT, "barrier pivot_m must be between -3 and 3, found %g",
                        barrier->pivot_m);
-    return CP_OK;
+    return check_party(barrier, error);
 }

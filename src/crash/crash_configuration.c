@@ -166,6 +166,45 @@ cp_status cp_crash_configuration_from_description(
     return CP_OK;
 }
 
+cp_status cp_crash_configuration_struck(const cp_vehicle_model *model_a,
+                                        const cp_vehicle_model *model_b, cp_contact_side side,
+                                        double at_m, double angle_rad, double speed_a_m_s,
+                                        double speed_b_m_s, cp_crash_configuration *configuration,
+                                        cp_error *error)
+{
+    if (side == CP_SIDE_FRONT)
+        return cp_fail(error, CP_BAD_INPUT, "a struck side must be left, right or rear");
+    *configuration = (cp_crash_configuration){.side = {side, CP_SIDE_FRONT}};
+    cp_body_state *a = &configuration->vehicle[0], *b = &configuration->vehicle[1];
+    a->velocity_m_s.x = speed_a_m_s;
+
+    // Where the middle of b's front would lie on a, and where b heads to.
+    double half_m = 0.5 * model_a->width_m, inwards_rad = side == CP_SIDE_LEFT    ? -0.5 * CP_PI
+                                                          : side == CP_SIDE_RIGHT ? 0.5 * CP_PI
+                                                                                  : 0.0;
+    cp_vec2 aim_m = side == CP_SIDE_REAR
+                        ? (cp_vec2){model_a->cg_to_front_m - model_a->length_m, at_m}
+                        : (cp_vec2){at_m, side == CP_SIDE_LEFT ? half_m : -half_m};
+    b->yaw_rad = cp_wrap_angle(inwards_rad + angle_rad);
+    cp_vec2 heading = cp_vec2_heading(b->yaw_rad);
+    b->velocity_m_s = cp_vec2_scale(heading, speed_b_m_s);
+
+    // From well behind onwards by the distance left; that cannot overshoot.
+    cp_outline outline_a = car_outline(model_a, a);
+    double way_m = -20.0;
+    for (int k = 0; k < 100000 && way_m < 20.0; k++) {
+        b->cog_m = cp_vec2_add(aim_m, cp_vec2_scale(heading, way_m - model_b->cg_to_front_m));
+        cp_outline outline_b = car_outline(model_b, b);
+        double distance_m = cp_outline_distance(&outline_a, &outline_b);
+        if (distance_m <= 1e-10)
+            return CP_OK;
+        way_m += fmax(distance_m, 1e-10);
+    }
+    return cp_fail(error, CP_BAD_INPUT,
+                   "struck at %g mm with angle %g deg: the two miss each other", 1e3 * at_m,
+                   cp_deg_from_rad(angle_rad));
+}
+
 // Share of a's width that the opponent's outline covers, projected on a's y axis.
 static double overlap_share(const cp_outline *a, const cp_outline *b)
 {

@@ -62,6 +62,16 @@ CP_MUST_CHECK cp_status cp_crash_configuration_from_description(
     double speed_a_m_s, double speed_b_m_s, double lateral_offset_m, double angle_rad,
     cp_crash_configuration *configuration, cp_error *error);
 
+/* Car a drives along +x from the origin of the plane and is struck on a side or its rear by the
+ * front of b: square to it (angle_rad 0, positive turns b counter-clockwise), the middle of b's
+ * front at a's x (a side) or y (the rear) at_m from its centre of gravity, b driving along its
+ * heading, moved along it until they just touch. Errors: CP_BAD_INPUT when they miss each other,
+ * or when side is the front. */
+CP_MUST_CHECK cp_status cp_crash_configuration_struck(
+    const cp_vehicle_model *model_a, const cp_vehicle_model *model_b, cp_contact_side side,
+    double at_m, double angle_rad, double speed_a_m_s, double speed_b_m_s,
+    cp_crash_configuration *configuration, cp_error *error);
+
 /* Distance of the two outlines of a configuration, negative when they overlap. */
 double cp_crash_contact_gap(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
                             const cp_crash_configuration *configuration);

@@ -4,8 +4,10 @@
 #include "core/memory.h"
 #include "core/units.h"
 #include "crash/barrier.h"
+#include "crash/barrier_party.h"
 #include "crash/encounter.h"
 #include "crash/film_camera.h"
+#include "crash/struck_structure.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -70,6 +72,11 @@ void cp_crash_library_end(void)
     dCloseODE();
 }
 
+bool cp_crash_library_is_double(void)
+{
+    return dCheckConfiguration("ODE_double_precision") != 0;
+}
+
 cp_status cp_crash_thread_begin(cp_error *error)
 {
     if (!dAllocateODEDataForThread(dAllocateMaskAll))
@@ -95,6 +102,7 @@ typedef struct crash_run {
     int car_count;
     cp_vec2 common_m_s; /* velocity of the plane */
     cp_encounter encounter;
+    cp_contact_side side[2]; /* where each is struck */
     cp_pose start[2];
     cp_vec2 start_m_s[2];       /* of whole cars, seen from the plane */
     cp_body_state last[2];      /* centre of gravity at the end of the last step */
@@ -173,10 +181,24 @@ static bool find_first_touch(crash_run *run, cp_vec2 approach, double *travel_m)
 
 static void translate_car(cp_car *car, cp_vec2 shift_m)
 {
-    for (int k = 0; k < CP_BODY_COUNT; k++) {
+    for (int k = 0; k < car->body_count; k++) {
         const dReal *p = dBodyGetPosition(car->body[k]);
         dBodySetPosition(car->body[k], p[0] + shift_m.x, p[1] + shift_m.y, 0.0);
     }
+}
+
+// A car with sides and rear unless it is struck on its front; or a barrier.
+static cp_status build_party(cp_car *car, const cp_vehicle_model *model, cp_contact_side struck,
+                             dWorldID world, const cp_body_state *state, cp_error *error)
+{
+    if (model->is_barrier) {
+        cp_barrier_party_build(car, model, world, state);
+        return CP_OK;
+    }
+    cp_status status = cp_car_build(car, model, world, state, error);
+    if (status == CP_OK && struck != CP_SIDE_FRONT)
+        cp_struck_build(car);
+    return status;
 }
 
 // Build both parties in a's frame and move a along the relative velocity until they touch.
@@ -196,9 +218,11 @@ static cp_status set_up(crash_run *run, const cp_vehicle_model *models[2],
     for (int k = 0; k < run->car_count; k++) {
         cp_body_state state = states[k];
         state.velocity_m_s = cp_vec2_sub(state.velocity_m_s, run->common_m_s);
-        cp_status status = cp_car_build(&run->car[k], models[k], run->world, &state, error);
+        cp_status status =
+            build_party(&run->car[k], models[k], configuration->side[k], run->world, &state, error);
         if (status != CP_OK)
             return status;
+        run->side[k] = configuration->side[k];
         run->encounter.car[k] = &run->car[k];
         approach = cp_vec2_add(approach, cp_vec2_scale(state.velocity_m_s, k == 0 ? 1.0 : -1.0));
     }
@@ -392,8 +416,8 @@ static void sum_energy(crash_run *run)
         energy->kinetic_j += cp_car_kinetic_energy(&run->car[c]);
         energy->elastic_j += cp_car_elastic_energy(&run->car[c]);
         energy->plastic_j += absorbed.longitudinal_j + absorbed.crash_box_j + absorbed.bending_j +
-                             absorbed.engine_j + absorbed.corner_j + absorbed.upper_j -
-                             run->car[c].mount_damping_j;
+                             absorbed.engine_j + absorbed.corner_j + absorbed.upper_j +
+                             absorbed.struck_j - run->car[c].mount_damping_j;
         energy->rate_j += absorbed.rate_j;
         energy->mount_damping_j += run->car[c].mount_damping_j;
         blocks_j += cp_car_block_energy(&run->car[c]);
@@ -478,8 +502,10 @@ static cp_status advance(crash_run *run, double dt, double *pressed_n, cp_error 
         return cp_fail(error, CP_CRASH_FAILED, "the physics engine ODE refused the step at %g s",
                        dt * (double)run->sample);
     *pressed_n = cp_encounter_end_step(&run->encounter, dt);
-    for (int c = 0; c < run->car_count; c++)
+    for (int c = 0; c < run->car_count; c++) {
         cp_car_after_step(&run->car[c], dt);
+        cp_struck_after_step(&run->car[c]);
+    }
     record_step(run, dt);
     film_now(run, dt);
     return CP_OK;
@@ -540,7 +566,7 @@ static cp_status simulate_contact(crash_run *run, cp_error *error)
 static double sum_of_parts(const cp_car_absorbed *part)
 {
     return part->longitudinal_j + part->crash_box_j + part->bending_j + part->engine_j +
-           part->corner_j + part->upper_j + part->rate_j;
+           part->corner_j + part->upper_j + part->struck_j + part->rate_j;
 }
 
 // What has become of each car as a whole.
@@ -585,6 +611,7 @@ static cp_status evaluate(crash_run *run, cp_error *error)
             return status;
         take_whole_delta_v(&result->whole[c], &result->severity[c]);
         result->crush_m[c] = run->car[c].crush_m;
+        result->struck[c] = cp_struck_of(&run->car[c], run->side[c]);
     }
     return CP_OK;
 }

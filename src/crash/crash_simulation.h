@@ -4,20 +4,10 @@
 
 #include "crash/crash_configuration.h"
 #include "crash/crash_film.h"
+#include "crash/crash_outcome.h"
 #include "pulse/severity.h"
 
 /* One crash on the multibody surrogate. */
-
-/* What the parts of a car have dissipated, J. */
-typedef struct cp_car_absorbed {
-    double longitudinal_j; /* crush of the longitudinal members */
-    double crash_box_j;    /* of the crash boxes with the bumper */
-    double bending_j;      /* feet of the longitudinals, halves of the cross member */
-    double engine_j;       /* cradle, firewall behind it, mounts with their dampers */
-    double corner_j;       /* outboard corners with the cell's edge behind them */
-    double upper_j;        /* upper load path likewise */
-    double rate_j;         /* what strain rate adds to all of them */
-} cp_car_absorbed;
 
 typedef struct cp_crash_options {
     double time_step_s;        /* default 0.0005 */
@@ -73,6 +63,7 @@ typedef struct cp_crash_result {
                               * the axes of their first poses */
     cp_crash_whole whole[2];
     double crush_m[2];   /* largest shortening of the longer-pushed side, bumper to firewall */
+    cp_struck struck[2]; /* where it was struck */
     double separation_s; /* last contact force */
     double t_common_s;   /* two cars: first zero of relative velocity along its first direction */
     double shift_m;      /* moved along the relative velocity until the outlines just touched */
@@ -97,6 +88,8 @@ void cp_crash_result_destroy(cp_crash_result *result);
  * no memory the process ends with a message and exit code 1: it writes through what it is given. */
 CP_MUST_CHECK cp_status cp_crash_library_begin(cp_error *error);
 void cp_crash_library_end(void);
+/* Whether the ODE that was loaded computes in double precision, as it must. */
+bool cp_crash_library_is_double(void);
 /* In every further thread that simulates. */
 CP_MUST_CHECK cp_status cp_crash_thread_begin(cp_error *error);
 void cp_crash_thread_end(void);

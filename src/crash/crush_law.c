@@ -34,6 +34,18 @@ static void finish(cp_crush_law *law, const cp_vehicle_model *m, double stop_kn_
     law->unload_n_m = fmin(law->unload_n_m, law->unload_end_n_m);
 }
 
+cp_crush_law cp_crush_law_share(cp_crush_law law, double share_1)
+{
+    for (int k = 0; k < law.points; k++)
+        law.force_n[k] *= share_1;
+    law.stop_n_m *= share_1;
+    law.plateau_n *= share_1;
+    law.unload_n_m *= share_1;
+    law.unload_end_n_m *= share_1;
+    law.pull_n *= share_1;
+    return law;
+}
+
 cp_crush_law cp_longitudinal_law(const cp_vehicle_model *m)
 {
     cp_crush_law law = {0};
@@ -110,5 +122,69 @@ cp_crush_law cp_corner_side_law(const cp_vehicle_model *m)
     add_point(&law, fmin(0.02, 0.5 * m->corner_side_m), m->corner_side_kn);
     add_point(&law, m->corner_side_m, m->corner_side_kn);
     finish(&law, m, m->body_stiffness_kn_m, INFINITY);
+    return law;
+}
+
+cp_crush_law cp_side_zone_law(const cp_vehicle_model *m, int zone)
+{
+    const double begin_kn[CP_SIDE_ZONES] = {m->side_front_wheel_begin_kn_m, m->side_door_begin_kn_m,
+                                            m->side_rear_wheel_begin_kn_m};
+    const double end_kn[CP_SIDE_ZONES] = {m->side_front_wheel_end_kn_m, m->side_door_end_kn_m,
+                                          m->side_rear_wheel_end_kn_m};
+    cp_crush_law law = {0};
+    add_point(&law, m->side_collapse_begin_m, begin_kn[zone]);
+    add_point(&law, m->side_collapse_end_m, end_kn[zone]);
+    finish(&law, m, m->body_stiffness_kn_m, m->cell_kn);
+    return law;
+}
+
+cp_crush_law cp_side_law(const cp_crush_law zone[CP_SIDE_ZONES],
+                         const double width_m[CP_SIDE_ZONES])
+{
+    cp_crush_law law = zone[0];
+    for (int k = 0; k < law.points; k++) {
+        law.force_n[k] = 0.0;
+        for (int z = 0; z < CP_SIDE_ZONES; z++)
+            law.force_n[k] += width_m[z] * zone[z].force_n[k];
+    }
+    law.plateau_n = fmax(law.plateau_n, cp_crush_collapse_force(&law));
+    return law;
+}
+
+cp_crush_law cp_rear_law(const cp_vehicle_model *m)
+{
+    static const double RISE_M = 0.03; // from the bumper's force to that of rails and floor
+    cp_crush_law law = {0};
+    add_point(&law, m->rear_bumper_m / 3.0, m->rear_bumper_kn);
+    add_point(&law, m->rear_bumper_m, m->rear_bumper_kn);
+    add_point(&law, m->rear_bumper_m + RISE_M, m->rear_collapse_begin_kn);
+    add_point(&law, m->rear_collapse_end_m, m->rear_collapse_end_kn);
+    finish(&law, m, m->body_stiffness_kn_m, m->cell_kn);
+    return law;
+}
+
+cp_crush_law cp_rear_side_law(const cp_vehicle_model *m)
+{
+    cp_crush_law law = {0};
+    add_point(&law, fmin(0.02, 0.5 * m->rear_side_m), m->rear_side_kn);
+    add_point(&law, m->rear_side_m, m->rear_side_kn);
+    finish(&law, m, m->body_stiffness_kn_m, INFINITY);
+    return law;
+}
+
+cp_crush_law cp_barrier_face_law(const cp_barrier *barrier)
+{
+    // Honeycomb: constant forces after a short rise each, then the rigid body behind it.
+    static const double RISE_M = 0.01, STEP_M = 0.02, STOP_N_M = 2e7, UNLOAD_1 = 2.0;
+    cp_crush_law law = {.stop_n_m = STOP_N_M, .plateau_n = INFINITY};
+    if (barrier->face_bumper_m > 0.0) {
+        add_point(&law, RISE_M, barrier->face_bumper_kn);
+        add_point(&law, barrier->face_bumper_m + RISE_M, barrier->face_bumper_kn);
+        add_point(&law, barrier->face_bumper_m + RISE_M + STEP_M, barrier->face_kn);
+    } else {
+        add_point(&law, RISE_M, barrier->face_kn);
+    }
+    add_point(&law, barrier->face_m, barrier->face_kn);
+    law.unload_n_m = law.unload_end_n_m = UNLOAD_1 * STOP_N_M;
     return law;
 }

@@ -2,6 +2,7 @@
 #include "crash/encounter.h"
 
 #include "crash/block_yield.h"
+#include "crash/struck_structure.h"
 
 #include <string.h>
 
@@ -9,6 +10,11 @@
 static int outline_count(const cp_encounter *encounter, int party)
 {
     return encounter->car[party] != NULL ? encounter->car[party]->outline_count : 1;
+}
+
+static bool is_absent(const cp_car *car, int outline)
+{
+    return car != NULL && car->outline[outline].absent;
 }
 
 static cp_outline outline_now(const cp_encounter *encounter, int party, int index)
@@ -44,6 +50,8 @@ double cp_encounter_distance(const cp_encounter *encounter, const cp_displacemen
     double nearest_m = INFINITY;
     for (int i = 0; i < outline_count(encounter, 0); i++) {
         for (int j = 0; j < outline_count(encounter, 1); j++) {
+            if (is_absent(encounter->car[0], i) || is_absent(encounter->car[1], j))
+                continue;
             double distance_m = cp_outline_distance_below(&outline[0][i], &outline[1][j], limit_m);
             nearest_m = fmin(nearest_m, distance_m);
             limit_m = fmin(limit_m, nearest_m);
@@ -68,8 +76,10 @@ static bool is_cross_member(const cp_car *car, int outline)
 
 static bool is_upper_path(const cp_car *car, int outline)
 {
-    return car != NULL && outline >= CP_OUTLINE_BLOCKS &&
-           cp_car_part_of_block(car, outline - CP_OUTLINE_BLOCKS) >= 2;
+    if (car == NULL || outline < CP_OUTLINE_BLOCKS)
+        return false;
+    int part = cp_car_part_of_block(car, outline - CP_OUTLINE_BLOCKS);
+    return part == 2 || part == 3;
 }
 
 void cp_encounter_set_pairs(cp_encounter *encounter)
@@ -82,7 +92,8 @@ void cp_encounter_set_pairs(cp_encounter *encounter)
             encounter->pair[i][j] = (cp_encounter_pair){
                 .body = {a->body[a->outline[i].body],
                          b != NULL ? b->body[b->outline[j].body] : NULL},
-                .never_meets = (is_cross_member(a, i) && is_upper_path(b, j)) ||
+                .never_meets = is_absent(a, i) || is_absent(b, j) ||
+                               (is_cross_member(a, i) && is_upper_path(b, j)) ||
                                (is_upper_path(a, i) && is_cross_member(b, j)),
                 .stiffness_n_m = in_series(a->outline[i].stiffness_n_m, stiffness_b_n_m),
                 .damping_n_s_m = in_series(a->outline[i].damping_n_s_m, damping_b_n_s_m)};
@@ -179,6 +190,13 @@ static void share_faces(cp_encounter *encounter, int party, const cp_outline out
         cp_crush_block *block = cp_encounter_block(encounter, party, k);
         if (block == NULL)
             continue;
+        cp_car *car = encounter->car[party];
+        if (cp_car_is_struck(car) && k >= CP_OUTLINE_BLOCKS + car->struck_block) {
+            cp_struck_cover(car, k - CP_OUTLINE_BLOCKS, covered[k].right_m, covered[k].left_m,
+                            covered[k].inside_m);
+            continue;
+        }
+
         // A dent spreads, but not beyond the block's edge: what only grazes it meets next to
         // nothing.
         double dent_m = fmin(CP_CONTACT_PATCH_M, 2.0 * covered[k].inside_m);

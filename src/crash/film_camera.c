@@ -90,7 +90,7 @@ static void take_blocks(const cp_car *car, cp_film_shape part[CP_FILM_PART_COUNT
     static const cp_film_part PART[4] = {CP_FILM_CORNER_LEFT, CP_FILM_CORNER_RIGHT,
                                          CP_FILM_UPPER_LEFT, CP_FILM_UPPER_RIGHT};
     int strips[4] = {0};
-    for (int k = 0; k < car->block_count; k++) {
+    for (int k = 0; k < car->front_block_count; k++) {
         int place = cp_car_part_of_block(car, k);
         cp_film_shape strip = shape_of(car, CP_OUTLINE_BLOCKS + k), *whole = &part[PART[place]];
         double share = 1.0 / ++strips[place];
@@ -103,20 +103,44 @@ static void take_blocks(const cp_car *car, cp_film_shape part[CP_FILM_PART_COUNT
     }
 }
 
+// The body of a car with sides and rear of their own: what lies between their faces.
+static cp_film_shape struck_body(const cp_car *car)
+{
+    cp_pose root = cp_body_pose(car->body[CP_BODY_ROOT]);
+    cp_film_shape shape = shape_of(car, CP_OUTLINE_BODY);
+    double reach_m[3]; // of the faces left, right, rear from the middle of the root
+    for (int face = 0; face < 3; face++) {
+        cp_outline part = cp_car_outline_now(car, CP_OUTLINE_BLOCKS + car->struck_block + face);
+        cp_vec2 middle = cp_vec2_add(part.centre_m, cp_vec2_scale(part.along, part.half_length_m));
+        cp_vec2 local = cp_pose_to_local(root, middle);
+        reach_m[face] = face < 2 ? local.y : local.x;
+    }
+    double front_m = cp_pose_to_local(root, shape.centre_m).x + 0.5 * shape.length_m;
+    shape.length_m = front_m - reach_m[2];
+    shape.width_m = reach_m[0] - reach_m[1];
+    cp_vec2 centre = {0.5 * (front_m + reach_m[2]), 0.5 * (reach_m[0] + reach_m[1])};
+    shape.centre_m = cp_pose_to_world(root, centre);
+    shape.radius_m = fmin(car->model->cell_radius_m, 0.5 * fmin(shape.length_m, shape.width_m));
+    return shape;
+}
+
 static void take_parts(const cp_car *car, cp_film_car *seen)
 {
-    for (int side = 0; side < 2; side++)
+    for (int side = 0; side < 2 && !car->model->is_barrier; side++)
         seen->part[CP_FILM_CROSS_MEMBER_LEFT + side] = shape_of(car, side);
-    seen->part[CP_FILM_ENGINE] = shape_of(car, CP_OUTLINE_ENGINE);
-    seen->part[CP_FILM_BODY] = shape_of(car, CP_OUTLINE_BODY);
+    if (!car->model->is_barrier)
+        seen->part[CP_FILM_ENGINE] = shape_of(car, CP_OUTLINE_ENGINE);
+    seen->part[CP_FILM_BODY] =
+        cp_car_is_struck(car) ? struck_body(car) : shape_of(car, CP_OUTLINE_BODY);
     take_blocks(car, seen->part);
-    for (int side = 0; side < 2; side++)
+    for (int side = 0; side < 2 && !car->model->is_barrier; side++)
         take_members(car, side, seen->part);
 
     // In the plane of the simulation so far; now from the car itself.
     cp_body_state cog = cp_car_cog_state(car);
     for (int k = 0; k < CP_FILM_PART_COUNT; k++)
-        seen->part[k] = seen_from((cp_pose){cog.cog_m, cog.yaw_rad}, seen->part[k]);
+        if (!car->model->is_barrier || k == CP_FILM_BODY) // a barrier has no other parts
+            seen->part[k] = seen_from((cp_pose){cog.cog_m, cog.yaw_rad}, seen->part[k]);
 }
 
 // ---- frames ----------------------------------------------------------------------------------

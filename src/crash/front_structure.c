@@ -132,28 +132,25 @@ static cp_status distribute_mass(cp_car *car, const layout *at, cp_vec2 place[CP
     return CP_OK;
 }
 
-static void place_bodies(cp_car *car, dWorldID world, const cp_body_state *state,
-                         const cp_vec2 place[CP_BODY_COUNT])
+void cp_car_place_body(cp_car *car, int index, cp_vec2 place_m, dWorldID world,
+                       const cp_body_state *state)
 {
-    cp_pose pose = {state->cog_m, state->yaw_rad};
-    for (int k = 0; k < CP_BODY_COUNT; k++) {
-        dBodyID body = dBodyCreate(world);
-        dMass mass;
-        double i = car->inertia_kg_m2[k];
-        dMassSetParameters(&mass, car->mass_kg[k], 0, 0, 0, i, i, i, 0, 0, 0);
-        dBodySetMass(body, &mass);
-        cp_vec2 at = cp_pose_to_world(pose, place[k]);
-        cp_vec2 velocity = cp_point_velocity(state->velocity_m_s, state->yaw_rate_rad_s,
-                                             cp_vec2_sub(at, state->cog_m));
-        dQuaternion turn = {cos(0.5 * state->yaw_rad), 0, 0, sin(0.5 * state->yaw_rad)};
-        dBodySetPosition(body, at.x, at.y, 0.0);
-        dBodySetQuaternion(body, turn);
-        dBodySetLinearVel(body, velocity.x, velocity.y, 0.0);
-        dBodySetAngularVel(body, 0.0, 0.0, state->yaw_rate_rad_s);
-        dBodySetGyroscopicMode(body, 0);
-        dBodySetAutoDisableFlag(body, 0);
-        car->body[k] = body;
-    }
+    dBodyID body = dBodyCreate(world);
+    dMass mass;
+    double i = car->inertia_kg_m2[index];
+    dMassSetParameters(&mass, car->mass_kg[index], 0, 0, 0, i, i, i, 0, 0, 0);
+    dBodySetMass(body, &mass);
+    cp_vec2 at = cp_pose_to_world((cp_pose){state->cog_m, state->yaw_rad}, place_m);
+    cp_vec2 velocity = cp_point_velocity(state->velocity_m_s, state->yaw_rate_rad_s,
+                                         cp_vec2_sub(at, state->cog_m));
+    dQuaternion turn = {cos(0.5 * state->yaw_rad), 0, 0, sin(0.5 * state->yaw_rad)};
+    dBodySetPosition(body, at.x, at.y, 0.0);
+    dBodySetQuaternion(body, turn);
+    dBodySetLinearVel(body, velocity.x, velocity.y, 0.0);
+    dBodySetAngularVel(body, 0.0, 0.0, state->yaw_rate_rad_s);
+    dBodySetGyroscopicMode(body, 0);
+    dBodySetAutoDisableFlag(body, 0);
+    car->body[index] = body;
 }
 
 // Prismatic joint in the plane. ODE's piston also allows a turn about its axis, which nothing in
@@ -272,26 +269,12 @@ typedef struct stripped_part {
     double radius_m; /* rounding of a strip */
 } stripped_part;
 
-static cp_crush_law share_of(const cp_crush_law *whole, double share_1)
-{
-    cp_crush_law law = *whole;
-    for (int k = 0; k < law.points; k++)
-        law.force_n[k] *= share_1;
-    law.stop_n_m *= share_1;
-    law.plateau_n *= share_1;
-    law.unload_n_m *= share_1;
-    law.unload_end_n_m *= share_1;
-    law.pull_n *= share_1;
-    return law;
-}
-
 static void set_strips(cp_car *car, const stripped_part *part, double sign)
 {
     const cp_vehicle_model *m = car->model;
     double share = 1.0 / part->strips, width_m = share * (part->outer_m - part->inner_m);
-    cp_crush_law law = share_of(&part->law, share);
-    cp_crush_law side_law = cp_corner_side_law(m);
-    side_law = share_of(&side_law, share);
+    cp_crush_law law = cp_crush_law_share(part->law, share);
+    cp_crush_law side_law = cp_crush_law_share(cp_corner_side_law(m), share);
     for (int k = 0; k < part->strips; k++) {
         int block = car->block_count++;
         car->block[block] =
@@ -336,6 +319,7 @@ static void set_blocks(cp_car *car, const layout *at, double root_m)
     set_strips(car, &corner, -1.0);
     set_strips(car, &upper, 1.0);
     set_strips(car, &upper, -1.0);
+    car->front_block_count = car->block_count;
     car->outline_count = CP_OUTLINE_BLOCKS + car->block_count;
 
     // The passenger cell yields at its edges too, where nothing of the front lies before them.
@@ -346,6 +330,8 @@ static void set_blocks(cp_car *car, const layout *at, double root_m)
 int cp_car_part_of_block(const cp_car *car, int block)
 {
     int corner_strips = (int)car->model->corner_strips_1;
+    if (block >= car->front_block_count)
+        return 4 + block - car->front_block_count;
     if (block < 2 * corner_strips)
         return block / corner_strips;
     return 2 + (block - 2 * corner_strips) / (int)car->model->upper_strips_1;
@@ -394,16 +380,22 @@ static void set_outlines(cp_car *car, const layout *at, const cp_vec2 place[CP_B
     }
 }
 
+bool cp_car_is_struck(const cp_car *car)
+{
+    return car->struck_block >= 0;
+}
+
 cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model, dWorldID world,
                        const cp_body_state *state, cp_error *error)
 {
-    *car = (cp_car){.model = model};
+    *car = (cp_car){.model = model, .body_count = CP_BODY_COUNT, .struck_block = -1};
     layout at = layout_of(model);
     cp_vec2 place[CP_BODY_COUNT];
     cp_status status = distribute_mass(car, &at, place, error);
     if (status != CP_OK)
         return status;
-    place_bodies(car, world, state, place);
+    for (int k = 0; k < CP_BODY_COUNT; k++)
+        cp_car_place_body(car, k, place[k], world, state);
     join_bodies(car, world, &at, place);
     set_force_elements(car, &at, place);
     set_blocks(car, &at, place[CP_BODY_ROOT].x);
@@ -548,6 +540,8 @@ static double block_intrusion(const cp_car *car, int block)
 
 void cp_car_apply_forces(cp_car *car)
 {
+    if (car->model->is_barrier)
+        return;
     for (int k = 0; k < CP_HINGE_COUNT; k++)
         car->hinge_gap_m[k] = hinge_gap(car->hinge[k]);
     car->elastic_j = 0.0;
@@ -561,6 +555,8 @@ void cp_car_apply_forces(cp_car *car)
 
 void cp_car_after_step(cp_car *car, double time_step_s)
 {
+    if (car->model->is_barrier)
+        return;
     for (int k = 0; k < CP_HINGE_COUNT; k++)
         mend_hinge(car, k, time_step_s);
 
@@ -584,7 +580,7 @@ void cp_car_after_step(cp_car *car, double time_step_s)
     for (int side = 0; side < 2; side++)
         car->crush_m = fmax(car->crush_m, compression_m[side] + compression_m[2 + side]);
     car->intrusion_m = fmax(car->intrusion_m, car->block[CP_BLOCK_CELL].s_m);
-    for (int k = 0; k < car->block_count; k++)
+    for (int k = 0; k < car->front_block_count; k++)
         car->intrusion_m = fmax(car->intrusion_m, block_intrusion(car, k));
     car->block[CP_BLOCK_CELL].s_m = car->intrusion_m;
 }
@@ -603,8 +599,10 @@ cp_outline cp_car_outline_now(const cp_car *car, int index)
     if (index >= CP_OUTLINE_BLOCKS) {
         const cp_crush_block *block = &car->block[outline->block];
         half_length_m -= 0.5 * fmin(block->s_m, usable_length(car, outline->block));
-        centre_m.x += outline->half_length_m - block->s_m - half_length_m;
-        centre_m.y += block->side_m;
+        double moved_m = outline->half_length_m - block->s_m - half_length_m;
+        cp_vec2 left = {-outline->along.y, outline->along.x};
+        centre_m = cp_vec2_add(centre_m, cp_vec2_add(cp_vec2_scale(outline->along, moved_m),
+                                                     cp_vec2_scale(left, block->side_m)));
     } else if (index == CP_OUTLINE_BODY) {
         half_length_m -= 0.5 * fmin(car->intrusion_m, half_length_m);
         centre_m.x -= outline->half_length_m - half_length_m;
@@ -629,7 +627,7 @@ cp_body_state cp_car_cog_state(const cp_car *car)
 double cp_car_kinetic_energy(const cp_car *car)
 {
     double energy_j = 0.0;
-    for (int k = 0; k < CP_BODY_COUNT; k++) {
+    for (int k = 0; k < car->body_count; k++) {
         const dReal *v = dBodyGetLinearVel(car->body[k]);
         double w = dBodyGetAngularVel(car->body[k])[2];
         energy_j += 0.5 * car->mass_kg[k] * (v[0] * v[0] + v[1] * v[1]) +
@@ -641,6 +639,8 @@ double cp_car_kinetic_energy(const cp_car *car)
 double cp_car_elastic_energy(const cp_car *car)
 {
     double energy_j = 0.0;
+    if (car->model->is_barrier)
+        return energy_j;
     for (int k = 0; k < CP_AXIAL_COUNT; k++)
         energy_j += cp_crush_elastic_energy(&car->axial[k].law, &car->axial[k].state,
                                             view_axial(car, &car->axial[k]).s_m);
@@ -657,7 +657,7 @@ double cp_car_elastic_energy(const cp_car *car)
 cp_car_absorbed cp_car_energy_absorbed(const cp_car *car)
 {
     cp_car_absorbed absorbed = {.engine_j = car->mount_damping_j};
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2 && !car->model->is_barrier; side++) {
         const cp_axial_element *rail = &car->axial[side], *box = &car->axial[2 + side],
                                *bay = &car->axial[4 + side];
         absorbed.longitudinal_j += cp_crush_plastic_energy(&rail->law, &rail->state);
@@ -666,12 +666,14 @@ cp_car_absorbed cp_car_energy_absorbed(const cp_car *car)
         absorbed.engine_j += car->tie[side].plastic_j;
         absorbed.rate_j += rail->rate_j + box->rate_j;
     }
-    for (int k = 0; k < CP_BENDING_COUNT; k++)
+    for (int k = 0; k < CP_BENDING_COUNT; k++) // of a barrier 0
         absorbed.bending_j += car->bending[k].state.plastic_j;
     absorbed.corner_j += car->block[CP_BLOCK_CELL].plastic_j;
     for (int k = 0; k < car->block_count; k++) {
-        bool corner = cp_car_part_of_block(car, k) < 2;
-        *(corner ? &absorbed.corner_j : &absorbed.upper_j) += car->block[k].plastic_j;
+        int part = cp_car_part_of_block(car, k);
+        *(part < 2   ? &absorbed.corner_j
+          : part < 4 ? &absorbed.upper_j
+                     : &absorbed.struck_j) += car->block[k].plastic_j;
         absorbed.rate_j += car->block[k].rate_j;
     }
     return absorbed;
@@ -689,7 +691,7 @@ cp_vec2 cp_car_momentum(const cp_car *car, double *angular_kg_m2_s)
 {
     cp_vec2 linear = {0.0, 0.0};
     *angular_kg_m2_s = 0.0;
-    for (int k = 0; k < CP_BODY_COUNT; k++) {
+    for (int k = 0; k < car->body_count; k++) {
         const dReal *p = dBodyGetPosition(car->body[k]), *v = dBodyGetLinearVel(car->body[k]);
         cp_vec2 momentum = cp_vec2_scale((cp_vec2){v[0], v[1]}, car->mass_kg[k]);
         linear = cp_vec2_add(linear, momentum);

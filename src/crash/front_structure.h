@@ -4,9 +4,10 @@
 
 #include "crash/contact.h"
 #include "crash/crash_configuration.h"
-#include "crash/crash_simulation.h"
+#include "crash/crash_outcome.h"
 #include "crash/crush_block.h"
 #include "crash/crush_element.h"
+#include "crash/crush_law.h"
 
 #include <ode/ode.h>
 
@@ -68,10 +69,10 @@ enum {
     CP_AXIAL_COUNT = 6, /* 2 longitudinals, 2 crash boxes, 2 engine-to-firewall */
     CP_BENDING_COUNT = 4,
     CP_TIE_COUNT = 2,
-    CP_STRIPS_MAX = 4, /* of a corner, of half of the upper load path */
-    CP_BLOCKS_MAX = 4 * CP_STRIPS_MAX,
-    CP_BLOCK_CELL = CP_BLOCKS_MAX, /* edges of the passenger cell */
-    CP_OUTLINE_ENGINE = 2,         /* after the halves of the cross member */
+    CP_STRIPS_MAX = 4,                     /* of a corner, of half of the upper load path */
+    CP_BLOCKS_MAX = 4 * CP_STRIPS_MAX + 3, /* and sides and rear */
+    CP_BLOCK_CELL = CP_BLOCKS_MAX,         /* edges of the passenger cell */
+    CP_OUTLINE_ENGINE = 2,                 /* after the halves of the cross member */
     CP_OUTLINE_BODY,
     CP_OUTLINE_BLOCKS, /* and one for every block */
     CP_OUTLINES_MAX = CP_OUTLINE_BLOCKS + CP_BLOCKS_MAX,
@@ -80,6 +81,7 @@ enum {
 
 /* A contact outline: which body carries it, where on it, how stiff it is. */
 typedef struct cp_car_outline {
+    bool absent; /* a barrier has only its body and its face */
     int body;
     int block;        /* crush block it is the outline of, -1: none */
     cp_vec2 centre_m; /* in the body's frame */
@@ -93,6 +95,7 @@ typedef struct cp_car_outline {
 
 typedef struct cp_car {
     const cp_vehicle_model *model;
+    int body_count; /* 1: a barrier, its root alone */
     dBodyID body[CP_BODY_COUNT];
     double mass_kg[CP_BODY_COUNT];
     double inertia_kg_m2[CP_BODY_COUNT];
@@ -101,9 +104,16 @@ typedef struct cp_car {
     cp_bending_element bending[CP_BENDING_COUNT];
     cp_tie_element tie[CP_TIE_COUNT];
     cp_crush_block block[CP_BLOCKS_MAX + 1]; /* strips of the corners left, right, of the upper load
-                                              * path left, right; from the middle outwards; then at
-                                              * CP_BLOCK_CELL the cell */
+                                              * path left, right; from the middle outwards; then the
+                                              * struck sides and rear; at CP_BLOCK_CELL the cell */
     int block_count;
+    int front_block_count;
+    int struck_block; /* number of the left side's, then right side's, rear's; -1: none */
+    double zone_end_m[CP_SIDE_ZONES]; /* of a side, from its front end */
+    cp_crush_law zone_law[CP_SIDE_ZONES];
+    double zone_width_m[2][CP_SIDE_ZONES]; /* of the left and right side that yields in this step */
+    double zone_j[2][CP_SIDE_ZONES];       /* taken so far, without what strain rate adds */
+    double zone_s_m[2];                    /* crush up to which that counts */
     cp_car_outline outline[CP_OUTLINES_MAX];
     int outline_count;
     dJointID hinge[CP_HINGE_COUNT];
@@ -115,11 +125,19 @@ typedef struct cp_car {
     double crush_m;     /* largest shortening bumper to firewall so far */
 } cp_car;
 
-/* Build the car in the world at a state. The world owns bodies and joints, and knows where the car
- * is: it must stay there until the world has gone. Errors: CP_BAD_INPUT
+/* Build the car in the world at a state, with its front alone. The world owns bodies and joints,
+ * and knows where the car is: it must stay there until the world has gone. Errors: CP_BAD_INPUT
  * when masses and inertia do not fit together (naming the field). */
 CP_MUST_CHECK cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model, dWorldID world,
                                      const cp_body_state *state, cp_error *error);
+
+/* Create body number index at a place, x forward from the centre of gravity, moving with the car.
+ */
+void cp_car_place_body(cp_car *car, int index, cp_vec2 place_m, dWorldID world,
+                       const cp_body_state *state);
+
+/* Whether it has sides and rear (crash/struck_structure.h). */
+bool cp_car_is_struck(const cp_car *car);
 
 /* Put all forces of the coming step on the bodies, and take elastic_j. */
 void cp_car_apply_forces(cp_car *car);
@@ -127,8 +145,8 @@ void cp_car_apply_forces(cp_car *car);
  * hinge's two anchors have drifted apart. */
 void cp_car_after_step(cp_car *car, double time_step_s);
 
-/* Part a block belongs to: 0, 1 the left and right corner, 2, 3 the halves of the upper load path.
- */
+/* Part a block belongs to: 0, 1 the left and right corner, 2, 3 the halves of the upper load path,
+ * 4, 5, 6 the left and right side and the rear. */
 int cp_car_part_of_block(const cp_car *car, int block);
 
 /* Outline number index where it is now. */

@@ -33,6 +33,17 @@ static cp_status draw_parameter(const cp_vehicle_model *model, size_t index, cp_
         model->largest[index], TRIES_A_PARAMETER);
 }
 
+// The ensemble's values keep their ratio to the car's, within the bounds.
+static void take_value(cp_vehicle_model *drawn, size_t index, double value)
+{
+    double mean = cp_vehicle_model_get(drawn, index);
+    for (size_t m = 0; mean != 0.0 && m < drawn->member_count; m++)
+        drawn->member[m][index] =
+            fmin(fmax(drawn->member[m][index] * value / mean, drawn->smallest[index]),
+                 drawn->largest[index]);
+    cp_vehicle_model_set(drawn, index, value);
+}
+
 static cp_status draw_car(const cp_vehicle_model *model, cp_rng_key key, cp_vehicle_model *drawn,
                           cp_error *error)
 {
@@ -44,7 +55,7 @@ static cp_status draw_car(const cp_vehicle_model *model, cp_rng_key key, cp_vehi
         cp_status status = draw_parameter(model, k, key, &value, error);
         if (status != CP_OK)
             return status;
-        cp_vehicle_model_set(drawn, k, value);
+        take_value(drawn, k, value);
     }
     return CP_OK;
 }

@@ -8,7 +8,8 @@
 /* Cars of one make differ, and their parameters are known only so well: every parameter with a
  * scatter s > 0 in the vehicle file is normal about its value p with standard deviation s |p|,
  * independent of the others. A draw outside the parameter's bounds is drawn again (truncation), a
- * car whose parameters do not fit together is drawn again as a whole.
+ * car whose parameters do not fit together is drawn again as a whole. The parameter sets of an
+ * ensemble keep their ratio to the car's values.
  *
  * A draw is a function of (key, sample number, parameter name) only: samples may be drawn in any
  * order and on any thread, and giving another parameter scatter changes no draw of this one. */

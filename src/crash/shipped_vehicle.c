@@ -5,11 +5,19 @@
 
 // Embedded by src/crash/CMakeLists.txt, which has the same names. X(name).
 #define SHIPPED(X)                                                                                 \
+    X(bus)                                                                                         \
+    X(compact_car)                                                                                 \
+    X(delivery_van)                                                                                \
     X(honda_accord_2014)                                                                           \
+    X(large_car)                                                                                   \
     X(mid_size)                                                                                    \
+    X(mid_size_car)                                                                                \
+    X(pickup)                                                                                      \
+    X(rigid_truck)                                                                                 \
     X(small_car)                                                                                   \
     X(suv)                                                                                         \
     X(toyota_camry_2018)                                                                           \
+    X(tractor_trailer)                                                                             \
     X(van)
 
 #define DECLARE(name)                                                                              \

@@ -2,7 +2,9 @@
 #include "crash/validity.h"
 
 #include "core/units.h"
+#include "crash/evidence.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,19 +14,16 @@ static const double ROUNDING = 1e-9;
 // Beyond this the impact counts as oblique. The reference cases are all at 0: an assumption.
 static const double OBLIQUE_LIMIT_DEG = 15.0;
 
-unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
-                     const cp_crash_configuration *configuration,
-                     const cp_crash_description *description, int role)
+// Of a model that the scorecard does not judge: its own calibrated range.
+static unsigned outside_own_range(const cp_vehicle_model *model_a, const cp_vehicle_model *own,
+                                  const cp_crash_configuration *configuration,
+                                  const cp_crash_description *description,
+                                  const cp_evidence_case *crash, int role)
 {
-    const cp_vehicle_model *own = role == 0 ? model_a : model_b;
-    const cp_vehicle_model *other = role == 0 ? model_b : model_a;
     unsigned outside = 0;
-
-    // Speed of a rigid-barrier crash with the same change of velocity.
-    double share =
-        configuration->against_barrier ? 1.0 : other->mass_kg / (own->mass_kg + other->mass_kg);
-    double equivalent_m_s = description->closing_speed_m_s * share;
+    // A model without a calibrated range has no other limits to be within.
     bool calibrated = own->calibrated_speed_max_m_s > 0.0;
+    double equivalent_m_s = cp_m_s_from_km_h(crash->speed_km_h);
     if (calibrated && (equivalent_m_s < own->calibrated_speed_min_m_s - ROUNDING ||
                        equivalent_m_s > own->calibrated_speed_max_m_s + ROUNDING))
         outside |= CP_OUTSIDE_SPEED;
@@ -42,19 +41,41 @@ unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *mo
         outside |= CP_OUTSIDE_OFFSET;
     if (calibrated && fabs(description->angle_rad) > own->calibrated_angle_max_rad + ROUNDING)
         outside |= CP_OUTSIDE_ANGLE;
-    // A model without a calibrated range has no other limits to be within.
     if (!calibrated)
         outside |= CP_OUTSIDE_MODEL;
-    if (own->is_stretched)
-        outside |= CP_OUTSIDE_SIZE;
     if (fabs(description->velocity_angle_rad[role]) > cp_rad_from_deg(OBLIQUE_LIMIT_DEG) + ROUNDING)
         outside |= CP_OUTSIDE_OBLIQUE_VELOCITY;
+    return strcmp(crash->opponent, "front") == 0 ? outside
+                                                 : outside | CP_OUTSIDE_OPPONENT_STRUCTURE;
+}
 
-    // Calibrated on the front, against something that does not give way elsewhere.
+unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
+                     const cp_crash_configuration *configuration,
+                     const cp_crash_description *description, int role, cp_validity_ground *ground)
+{
+    const cp_vehicle_model *own = role == 0 ? model_a : model_b;
+    const cp_vehicle_model *other = role == 0 ? model_b : model_a;
+    cp_evidence_case crash =
+        cp_evidence_case_of(model_a, model_b, configuration, description, role);
+    cp_validity_ground found = {.evidence_class = CP_EVIDENCE_OWN, .error_1 = NAN};
+    unsigned outside = 0;
+    if (cp_evidence_judges(own)) {
+        const cp_evidence *evidence = cp_evidence_find(own, &crash, &outside);
+        if (evidence != NULL)
+            found = (cp_validity_ground){evidence->name, evidence->error_1};
+    } else {
+        outside = outside_own_range(model_a, own, configuration, description, &crash, role);
+    }
+
+    // What no class and no range allows for.
+    if (own->is_stretched)
+        outside |= CP_OUTSIDE_SIZE;
     if (configuration->side[role] != CP_SIDE_FRONT)
         outside |= CP_OUTSIDE_CONTACT_SIDE;
-    if (!configuration->against_barrier && configuration->side[1 - role] != CP_SIDE_FRONT)
+    if (!configuration->against_barrier && other->mass_kg > CP_HEAVY_FROM_KG)
         outside |= CP_OUTSIDE_OPPONENT_STRUCTURE;
+    if (ground != NULL)
+        *ground = outside == 0 ? found : (cp_validity_ground){NULL, NAN};
     return outside;
 }
 

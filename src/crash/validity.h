@@ -3,43 +3,33 @@
 #define CRASH_VALIDITY_H
 
 #include "crash/crash_configuration.h"
+#include "crash/validity_reason.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Whether one vehicle's crash lies inside what its model was calibrated for: a set of what is
- * outside, 0 = inside. X(name, bit, text). */
-#define CP_VALIDITY_REASONS(X)                                                                     \
-    X(CP_OUTSIDE_SPEED, 0, "speed")                                                                \
-    X(CP_OUTSIDE_OFFSET, 1, "offset")                                                              \
-    X(CP_OUTSIDE_ANGLE, 2, "angle")                                                                \
-    X(CP_OUTSIDE_OBLIQUE_VELOCITY, 3, "oblique_velocity")                                          \
-    X(CP_OUTSIDE_CONTACT_SIDE, 4, "contact_side")                                                  \
-    X(CP_OUTSIDE_OPPONENT_STRUCTURE, 5, "opponent_structure")                                      \
-    X(CP_OUTSIDE_MODEL, 6, "model")                                                                \
-    X(CP_OUTSIDE_DAMAGED, 7, "damaged")                                                            \
-    X(CP_OUTSIDE_NO_MODEL, 8, "no_model")                                                          \
-    X(CP_OUTSIDE_SIZE, 9, "size")                                                                  \
-    X(CP_OUTSIDE_NO_CONTACT, 10, "no_contact")                                                     \
-    X(CP_OUTSIDE_MOVED, 11, "moved")
-
-enum {
-#define CP_VALIDITY_NAME(name, bit, text) name = 1u << bit,
-    CP_VALIDITY_REASONS(CP_VALIDITY_NAME)
-#undef CP_VALIDITY_NAME
-};
-
 #define CP_VALIDITY_TEXT_SIZE 128
 
-/* Validity of vehicle role (0 or 1): speed by v_eq = closing * m_other / (m_own + m_other) (the
- * barrier has infinite mass), offset and angle by the calibrated range, oblique velocity beyond
- * 15 degrees (an assumption, stated as one), side struck other than front, opponent struck other
- * than on its front, model never calibrated. Offset and angle of role 1 are those seen from it.
- * size: the model's outline was stretched. no_contact, moved (below), no_model and damaged (one of
- * the two had crashed before) are the caller's to add: the configuration does not tell. */
+/* What speaks for the severity of a vehicle inside. */
+typedef struct cp_validity_ground {
+    const char *evidence_class; /* static text; NULL: outside */
+    double error_1;             /* relative error of severity there; NAN: not known */
+} cp_validity_ground;
+
+/* Validity of vehicle role (0 or 1). A model that the scorecard judges is inside where a class of
+ * tests speaks for the crash (crash/evidence.h); one that it does not judge, within its own
+ * calibrated range: speed by v_eq = closing * m_other / (m_own + m_other) (the barrier has infinite
+ * mass), offset and angle, oblique velocity up to 15 degrees (an assumption, stated as one), struck
+ * on its front against a front. model: judged and no class kept, or never calibrated. contact_side:
+ * struck elsewhere than on its front. opponent_structure: what the other is struck on is not spoken
+ * for, as of any vehicle over 3.5 t. size: the model's outline was stretched. Offset of role 1 is
+ * that seen from it. no_contact, moved (below), no_model and damaged (one of the two had crashed
+ * before) are the caller's to add: the configuration does not tell. ground may be NULL. */
 unsigned cp_validity(const cp_vehicle_model *model_a, const cp_vehicle_model *model_b,
                      const cp_crash_configuration *configuration,
-                     const cp_crash_description *description, int role);
+                     const cp_crash_description *description, int role, cp_validity_ground *ground);
+
+#define CP_HEAVY_FROM_KG 3500.0
 
 /* Where rectangles of traffic touch, models have round corners: they are moved along their relative
  * velocity until they touch too. More than that far is told as moved: then they meet elsewhere than

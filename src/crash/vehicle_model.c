@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "core/yaml_file.h"
 #include "crash/crush_law.h"
+#include "crash/vehicle_schema.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -30,6 +31,24 @@ cp_vehicle_model cp_vehicle_model_default(void)
         model.smallest[k] = CP_VEHICLE_PARAMETER[k].smallest;
         model.largest[k] = CP_VEHICLE_PARAMETER[k].largest;
     }
+    return model;
+}
+
+cp_vehicle_model cp_vehicle_model_of_barrier(const cp_barrier *barrier)
+{
+    cp_vehicle_model model = cp_vehicle_model_default();
+    snprintf(model.name, sizeof model.name, "barrier");
+    model.is_barrier = true;
+    model.barrier = *barrier;
+    model.mass_kg = barrier->mass_kg > 0.0 ? barrier->mass_kg : CP_FIXED_BARRIER_KG;
+    model.length_m = barrier->depth_m;
+    model.width_m = barrier->width_m;
+    model.cg_to_front_m = 0.5 * barrier->depth_m;
+    double plate_m2 = barrier->depth_m * barrier->depth_m + barrier->width_m * barrier->width_m;
+    model.yaw_inertia_kg_m2 = barrier->yaw_inertia_kg_m2 > 0.0 ? barrier->yaw_inertia_kg_m2
+                                                               : model.mass_kg * plate_m2 / 12.0;
+    if (barrier->friction_1 >= 0.0)
+        model.friction_1 = barrier->friction_1;
     return model;
 }
 
@@ -174,7 +193,7 @@ static const cyaml_schema_field_t VEHICLE_FIELDS[] = {
                          ensemble, &ENSEMBLE_VALUE, 1, CYAML_UNLIMITED),
     CYAML_FIELD_END};
 
-static const cyaml_schema_value_t VEHICLE_VALUE = {
+const cyaml_schema_value_t CP_VEHICLE_SCHEMA = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, yaml_vehicle, VEHICLE_FIELDS)};
 
 static cp_status read_calibrated(const cp_yaml_file *file, const yaml_calibrated *calibrated,
@@ -331,7 +350,7 @@ cp_status cp_vehicle_model_parse(const char *name, const char *content, size_t s
                                  cp_vehicle_model *model, cp_error *error)
 {
     cp_yaml_file file = {0};
-    cp_status status = cp_yaml_parse(name, content, size, &VEHICLE_VALUE, &file, error);
+    cp_status status = cp_yaml_parse(name, content, size, &CP_VEHICLE_SCHEMA, &file, error);
     if (status != CP_OK)
         return status;
     const yaml_vehicle *vehicle = (const yaml_vehicle *)file.data;
@@ -455,8 +474,31 @@ double cp_vehicle_model_largest_step(const cp_vehicle_model *m, const char **ele
     return 1.2 / sqrt(fastest);
 }
 
+// Side and rear: depths rise, and something is left of the car between front and rear structure.
+static cp_status check_struck(const cp_vehicle_model *m, double front_length_m, cp_error *error)
+{
+    if (m->side_collapse_end_m <= m->side_collapse_begin_m)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "side_collapse_end_m must be above side_collapse_begin_m = %g, found %g",
+                       m->side_collapse_begin_m, m->side_collapse_end_m);
+    const double least_m = m->rear_bumper_m + 0.05; // rise and collapse of the rails
+    if (m->rear_collapse_end_m < least_m)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "rear_collapse_end_m must be at least rear_bumper_m + 0.05 = %g, found %g",
+                       least_m, m->rear_collapse_end_m);
+    double between_m = m->length_m - front_length_m;
+    if (m->rear_collapse_end_m > 0.8 * between_m)
+        return cp_fail(error, CP_BAD_INPUT,
+                       "rear_collapse_end_m must not exceed 80 %% of the %g m behind the firewall, "
+                       "found %g",
+                       between_m, m->rear_collapse_end_m);
+    return CP_OK;
+}
+
 cp_status cp_vehicle_model_validate(const cp_vehicle_model *m, cp_error *error)
 {
+    if (m->is_barrier)
+        return cp_barrier_validate(&m->barrier, error);
     cp_status status = check_ranges(m, error);
     if (status != CP_OK)
         return status;
@@ -515,6 +557,10 @@ cp_status cp_vehicle_model_validate(const cp_vehicle_model *m, cp_error *error)
     if (status == CP_OK)
         status = check_collapse(error, "upper", m->upper_collapse_begin_m, m->upper_collapse_end_m,
                                 front_length_m - m->upper_gap_m);
+    if (status != CP_OK)
+        return status;
+
+    status = check_struck(m, front_length_m, error);
     if (status != CP_OK)
         return status;
 

@@ -13,11 +13,11 @@
  * of gravity or as named. X(field, unit, default, smallest, largest, what it is). The defaults are
  * a mid-size car (first parameter set, not fitted). */
 #define CP_VEHICLE_PARAMETERS(X)                                                                   \
-    X(mass_kg, "kg", 1640, 500, 5000, "whole car as it crashes, occupants included")               \
-    X(yaw_inertia_kg_m2, "kg m2", 2700, 500, 12000, "whole car about its centre of gravity")       \
-    X(length_m, "m", 4.86, 2.5, 8.0, "bumper to bumper")                                           \
-    X(width_m, "m", 1.85, 1.3, 2.6, "without mirrors")                                             \
-    X(cg_to_front_m, "m", 2.05, 0.8, 4.5, "centre of gravity to front bumper")                     \
+    X(mass_kg, "kg", 1640, 500, 60000, "whole car as it crashes, occupants included")              \
+    X(yaw_inertia_kg_m2, "kg m2", 2700, 500, 2500000, "whole car about its centre of gravity")     \
+    X(length_m, "m", 4.86, 2.5, 26.0, "bumper to bumper")                                          \
+    X(width_m, "m", 1.85, 1.3, 2.7, "without mirrors")                                             \
+    X(cg_to_front_m, "m", 2.05, 0.8, 12, "centre of gravity to front bumper")                      \
     X(longitudinal_y_m, "m", 0.47, 0.3, 0.7,                                                       \
       "middle of a longitudinal member from the centre line")                                      \
     X(longitudinal_length_m, "m", 0.62, 0.3, 1.0, "longitudinal member, hinge to crash box")       \
@@ -101,7 +101,37 @@
     X(body_damping_1, "1", 0.7, 0, 3,                                                              \
       "share of critical damping of body contacts at half the car's mass")                         \
     X(corner_radius_m, "m", 0.06, 0.01, 0.3, "rounding of cross member, engine and upper path")    \
-    X(friction_1, "1", 0.45, 0, 1.5, "Coulomb friction against barrier or opponent")
+    X(friction_1, "1", 0.45, 0, 1.5, "Coulomb friction against barrier or opponent")               \
+    X(side_collapse_begin_m, "m", 0.03, 0.005, 0.2, "depth where the side begins to collapse")     \
+    X(side_collapse_end_m, "m", 0.6, 0.1, 1.0, "depth where nothing of the side is left")          \
+    X(side_front_wheel_1, "1", 0.15, 0.02, 0.45,                                                   \
+      "share of the side, firewall to rear structure, that is the front wheel's zone")             \
+    X(side_rear_wheel_1, "1", 0.25, 0.02, 0.45, "likewise the rear wheel's; between: the door's")  \
+    X(side_front_wheel_begin_kn_m, "kN/m", 25, 2, 2000,                                            \
+      "force on a metre of the front wheel's zone where collapse begins")                          \
+    X(side_front_wheel_end_kn_m, "kN/m", 220, 2, 4000, "the same where nothing is left")           \
+    X(side_door_begin_kn_m, "kN/m", 18, 2, 2000,                                                   \
+      "force on a metre of door and B-pillar where collapse begins")                               \
+    X(side_door_end_kn_m, "kN/m", 160, 2, 4000, "the same where nothing is left")                  \
+    X(side_rear_wheel_begin_kn_m, "kN/m", 22, 2, 2000,                                             \
+      "force on a metre of the rear wheel's zone where collapse begins")                           \
+    X(side_rear_wheel_end_kn_m, "kN/m", 180, 2, 4000, "the same where nothing is left")            \
+    X(side_spread_m, "m", 1.8, 0.05, 3,                                                            \
+      "how much wider than what presses on it the side yields: sill, roof rail, pillars")          \
+    X(rear_bumper_m, "m", 0.06, 0.005, 0.3, "travel of the rear bumper")                           \
+    X(rear_bumper_kn, "kN", 60, 2, 800, "force of the rear bumper over its travel, whole width")   \
+    X(rear_collapse_begin_kn, "kN", 160, 2, 2000,                                                  \
+      "force on the whole width where rails and floor begin to collapse, 3 cm behind the bumper")  \
+    X(rear_collapse_end_m, "m", 0.75, 0.15, 1.5,                                                   \
+      "depth from the bumper where nothing of rails and luggage compartment is left")              \
+    X(rear_collapse_end_kn, "kN", 380, 2, 4000, "force there")                                     \
+    X(rear_spread_m, "m", 0.3, 0.05, 2, "how much wider than what presses on it the rear yields")  \
+    X(rear_side_kn, "kN", 60, 2, 800, "sideways force at which the rear overhang is pushed aside") \
+    X(rear_side_m, "m", 0.3, 0.05, 0.8, "way aside until it rests on the body")
+
+/* The parameters from side_collapse_begin_m on are the side and rear of a car struck there
+ * (crash/struck_structure.h). Their defaults give the middle of NHTSA's tests of struck sides and
+ * rears (db/validation/README.md); files of earlier versions, which do not name them, get these. */
 
 /* Parameters of earlier versions of the model, still read in vehicle files and no longer used:
  * X(name, what takes its place). */
@@ -130,6 +160,7 @@ typedef struct cp_vehicle_model {
     double calibrated_offset_max_m; /* to either side */
     double calibrated_angle_max_rad;
     cp_barrier barrier; /* of the study it was calibrated against */
+    bool is_barrier;    /* it is no car but that barrier (cp_vehicle_model_of_barrier) */
     bool is_stretched;  /* its outline, far beyond that of the car (cp_vehicle_model_cover) */
     /* Relative standard deviation of each parameter, 0 = certain; in the order of the table. */
     double scatter_1[CP_VEHICLE_PARAMETER_TOTAL];
@@ -159,6 +190,11 @@ extern const cp_vehicle_parameter CP_VEHICLE_PARAMETER[];
 extern const size_t CP_VEHICLE_PARAMETER_COUNT;
 
 cp_vehicle_model cp_vehicle_model_default(void);
+
+/* A barrier that moves or has a deformable face as a vehicle, its face the front: mass, outline and
+ * friction are its own, nothing else of the model is used. Fixed ones weigh CP_FIXED_BARRIER_KG. */
+#define CP_FIXED_BARRIER_KG 1e9
+cp_vehicle_model cp_vehicle_model_of_barrier(const cp_barrier *barrier);
 
 /* Value of parameter number index. */
 double cp_vehicle_model_get(const cp_vehicle_model *model, size_t index);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/configurations_csv.h"
 
+#include "core/array.h"
 #include "core/csv_row.h"
 #include "core/file.h"
 #include "core/units.h"
@@ -220,18 +221,11 @@ static cp_status take_row(reading *self, char *line, cp_error *error)
     cp_status status = fill_texts(self, &row, error);
     if (status == CP_OK)
         status = fill_numbers(self, &row, error);
-    if (status == CP_OK && (list->count & (list->count - 1)) == 0) {
-        size_t room = list->count == 0 ? 1 : 2 * list->count;
-        cp_listed_configuration *larger = realloc(list->row, room * sizeof *larger);
-        if (larger == NULL)
-            status = cp_fail_memory(error, "configurations");
-        else
-            list->row = larger;
-    }
-    if (status == CP_OK && tsearch(row.id, &self->ids, compare_texts) == NULL)
+    cp_listed_configuration *added = status == CP_OK ? cp_array_add(list->row, list->count) : NULL;
+    if (status == CP_OK && (added == NULL || tsearch(row.id, &self->ids, compare_texts) == NULL))
         status = cp_fail_memory(error, "configurations");
     if (status == CP_OK)
-        list->row[list->count++] = row;
+        *added = row;
     else
         destroy_row(&row);
     return status;
@@ -240,14 +234,12 @@ static cp_status take_row(reading *self, char *line, cp_error *error)
 // Why a row is not in the list.
 static cp_status add_bad(cp_configuration_list *list, const char *why, cp_error *error)
 {
-    char **larger = realloc(list->bad, (list->bad_count + 1) * sizeof *larger);
-    if (larger == NULL)
+    char **added = cp_array_add(list->bad, list->bad_count);
+    if (added == NULL)
         return cp_fail_memory(error, "configurations");
-    list->bad = larger;
-    list->bad[list->bad_count] = strdup(why);
-    if (list->bad[list->bad_count] == NULL)
+    *added = strdup(why);
+    if (*added == NULL)
         return cp_fail_memory(error, "configurations");
-    list->bad_count++;
     return CP_OK;
 }
 

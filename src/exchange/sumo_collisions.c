@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/sumo_collisions.h"
 
+#include "core/array.h"
 #include "core/xml_file.h"
 
 #include <math.h>
@@ -50,15 +51,10 @@ static cp_status remember_pair(reading *self, const char *one, const char *other
 static cp_status append(cp_collision_list *list, const cp_listed_collision *collision,
                         cp_error *error)
 {
-    // Room doubles whenever the count is a power of two.
-    if ((list->count & (list->count - 1)) == 0) {
-        size_t room = list->count == 0 ? 1 : 2 * list->count;
-        cp_listed_collision *larger = realloc(list->collision, room * sizeof *larger);
-        if (larger == NULL)
-            return cp_fail_memory(error, "collisions");
-        list->collision = larger;
-    }
-    list->collision[list->count++] = *collision;
+    cp_listed_collision *added = cp_array_add(list->collision, list->count);
+    if (added == NULL)
+        return cp_fail_memory(error, "collisions");
+    *added = *collision;
     return CP_OK;
 }
 
@@ -139,14 +135,9 @@ static cp_status read_places(const cp_xml_element *element, const double speed_m
 static cp_status append_places(cp_listed_collision *listed, cp_collision_places places,
                                bool is_swapped, cp_error *error)
 {
-    if ((listed->places_count & (listed->places_count - 1)) == 0) {
-        size_t room = listed->places_count == 0 ? 1 : 2 * listed->places_count;
-        cp_collision_places *larger = realloc(listed->places, room * sizeof *larger);
-        if (larger == NULL)
-            return cp_fail_memory(error, "collisions");
-        listed->places = larger;
-    }
-    cp_collision_places *added = &listed->places[listed->places_count++];
+    cp_collision_places *added = cp_array_add(listed->places, listed->places_count);
+    if (added == NULL)
+        return cp_fail_memory(error, "collisions");
     *added = places;
     for (int role = 0; is_swapped && role < 2; role++) {
         added->front_m[role] = places.front_m[1 - role];

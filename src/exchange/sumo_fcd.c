@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/sumo_fcd.h"
 
+#include "core/array.h"
 #include "core/log.h"
 #include "core/units.h"
 #include "core/xml_file.h"
@@ -60,14 +61,10 @@ static cp_status count_vehicle(reading *self, const char *id, cp_error *error)
 
 cp_status cp_fcd_track_append(cp_fcd_track *track, cp_fcd_sample sample, cp_error *error)
 {
-    if ((track->count & (track->count - 1)) == 0) {
-        size_t room = track->count == 0 ? 1 : 2 * track->count;
-        cp_fcd_sample *larger = realloc(track->sample, room * sizeof *larger);
-        if (larger == NULL)
-            return cp_fail_memory(error, "ways of vehicles");
-        track->sample = larger;
-    }
-    track->sample[track->count++] = sample;
+    cp_fcd_sample *added = cp_array_add(track->sample, track->count);
+    if (added == NULL)
+        return cp_fail_memory(error, "ways of vehicles");
+    *added = sample;
     return CP_OK;
 }
 
@@ -78,15 +75,11 @@ static cp_status number_lane(cp_fcd_record *record, const char *name, size_t *nu
     for (*number = 0; *number < record->lane_count; ++*number)
         if (strcmp(record->lanes[*number], name) == 0)
             return CP_OK;
-    char **larger = realloc(record->lanes, (record->lane_count + 1) * sizeof *larger);
-    if (larger == NULL)
+    char **lane = cp_array_add(record->lanes, record->lane_count);
+    if (lane == NULL)
         return cp_fail_memory(error, "lanes");
-    record->lanes = larger;
-    record->lanes[record->lane_count] = strdup(name);
-    if (record->lanes[record->lane_count] == NULL)
-        return cp_fail_memory(error, "lanes");
-    record->lane_count++;
-    return CP_OK;
+    *lane = strdup(name);
+    return *lane != NULL ? CP_OK : cp_fail_memory(error, "lanes");
 }
 
 static cp_status take_step(reading *self, const cp_xml_element *element, cp_error *error)

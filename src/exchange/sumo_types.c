@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/sumo_types.h"
 
+#include "core/array.h"
 #include "core/xml_file.h"
 
 #include <math.h>
@@ -85,13 +86,11 @@ static cp_status add(cp_vtypes *types, const cp_xml_element *element, cp_error *
 {
     cp_vtype type;
     cp_status status = fill(element, &type, error);
-    cp_vtype *larger = realloc(types->type, (types->count + 1) * sizeof *larger);
-    if (larger != NULL)
-        types->type = larger;
-    else if (status == CP_OK)
+    cp_vtype *added = status == CP_OK ? cp_array_add(types->type, types->count) : NULL;
+    if (status == CP_OK && added == NULL)
         status = cp_fail_memory(error, "vehicle types");
     if (status == CP_OK)
-        types->type[types->count++] = type;
+        *added = type;
     else
         destroy_type(&type);
     return status;

@@ -74,7 +74,7 @@ static void footprints_in_step(const void *context, double time_s, cp_rectangle 
     for (int k = 0; k < 2; k++) {
         cp_vehicle_state state =
             cp_motion_at(pair->motion[k], pair->step_length_s, time_s / pair->step_length_s);
-        rectangle[k] = cp_footprint_of_state(&state);
+        rectangle[k] = cp_vehicle_rectangle(&state);
     }
 }
 

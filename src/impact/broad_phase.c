@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact/broad_phase.h"
 
-#include "impact/array.h"
+#include "core/array.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "impact/detector.h"
 
+#include "core/array.h"
 #include "impact/approach.h"
-#include "impact/array.h"
 #include "impact/broad_phase.h"
 #include "impact/confirmation.h"
 #include "impact/footprint.h"
@@ -64,8 +64,8 @@ void cp_detector_destroy(cp_detector *detector)
 // Separation at the end of the step.
 static double separation_after(const cp_vehicle_motion *const motion[2])
 {
-    cp_rectangle one = cp_footprint_of_state(&motion[0]->after);
-    cp_rectangle other = cp_footprint_of_state(&motion[1]->after);
+    cp_rectangle one = cp_vehicle_rectangle(&motion[0]->after);
+    cp_rectangle other = cp_vehicle_rectangle(&motion[1]->after);
     return cp_rectangle_separation(&one, &other);
 }
 
@@ -153,7 +153,7 @@ static cp_status is_off_bent_lane(const cp_detector_scene *scene, const cp_vehic
 
 static cp_touching_body body_of(const cp_impact *impact, int role)
 {
-    return (cp_touching_body){.rectangle = cp_footprint_of_state(&impact->state[role]),
+    return (cp_touching_body){.rectangle = cp_vehicle_rectangle(&impact->state[role]),
                               .front_velocity_m_s = impact->front_velocity_m_s[role],
                               .yaw_rate_rad_s = impact->yaw_rate_rad_s[role]};
 }
@@ -164,8 +164,8 @@ static bool is_clipped_waiting(const cp_detector_scene *scene, const cp_impact *
     int waiting = fabs(impact->state[0].speed_m_s) < STANDING_M_S ? 0 : 1;
     if (!(fabs(impact->state[waiting].speed_m_s) < STANDING_M_S))
         return false;
-    cp_rectangle moving = cp_footprint_of_state(&impact->state[1 - waiting]);
-    cp_rectangle standing = cp_footprint_of_state(&impact->state[waiting]);
+    cp_rectangle moving = cp_vehicle_rectangle(&impact->state[1 - waiting]);
+    cp_rectangle standing = cp_vehicle_rectangle(&impact->state[waiting]);
     if (cp_width_in_way_m(&moving, &standing) >= 0.5 * fmin(moving.width_m, standing.width_m))
         return false;
     for (int role = 0; role < 2; role++)
@@ -283,7 +283,7 @@ static cp_impact impact_of(const cp_detector_scene *scene, const cp_vehicle_moti
     for (int k = 0; k < 2; k++) {
         bool jumped = cp_motion_is_jump(motion[k], scene->step_length_s);
         state[k] = cp_motion_at(motion[k], scene->step_length_s, fraction);
-        body[k] = (cp_touching_body){.rectangle = cp_footprint_of_state(&state[k]),
+        body[k] = (cp_touching_body){.rectangle = cp_vehicle_rectangle(&state[k]),
                                      .front_velocity_m_s = cp_motion_front_velocity(
                                          motion[k], scene->step_length_s, fraction),
                                      .yaw_rate_rad_s = jumped ? 0.0 : motion[k]->yaw_rate_rad_s};

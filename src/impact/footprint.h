@@ -4,11 +4,9 @@
 
 #include "core/geometry.h"
 #include "traffic/traffic.h"
+#include "traffic/vehicle_rectangle.h"
 
-/* The rectangle a vehicle covers, and where it is inside a step. */
-
-/* Rectangle of a SUMO state: front-bumper middle, heading, length, width. */
-cp_rectangle cp_footprint_of_state(const cp_vehicle_state *state);
+/* Where a vehicle is inside a step. */
 
 /* State inside the step: fraction 0 = beginning, 1 = end. Constant acceleration along the chord
  * between the two positions (ballistic update; a vehicle that comes to rest inside the step stands

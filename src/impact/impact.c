@@ -13,6 +13,18 @@ const char *cp_contact_verdict_text(cp_contact_verdict verdict)
     return TEXT[verdict];
 }
 
+void cp_impact_swap_roles(cp_impact *impact)
+{
+    const cp_impact was = *impact;
+    for (int role = 0; role < 2; role++) {
+        impact->vehicle[role] = was.vehicle[1 - role];
+        impact->state[role] = was.state[1 - role];
+        impact->yaw_rate_rad_s[role] = was.yaw_rate_rad_s[1 - role];
+        impact->front_velocity_m_s[role] = was.front_velocity_m_s[1 - role];
+        impact->side[role] = was.side[1 - role];
+    }
+}
+
 // Motion of the centre of gravity: it hangs behind the front bumper, whose velocity SUMO gives.
 static cp_body_state body_state(const cp_impact *impact, int role, const cp_vehicle_model *model)
 {

@@ -79,6 +79,9 @@ CP_MUST_CHECK cp_status cp_detector_step(cp_detector *detector, const cp_traffic
                                          void *context, const cp_impact **impacts, size_t *count,
                                          cp_error *error);
 
+/* Role a becomes role b and the other way round. */
+void cp_impact_swap_roles(cp_impact *impact);
+
 /* The configuration the surrogate starts from, in the world frame, cars as their models say
  * (centre of gravity cg_to_front behind the front bumper; its velocity is the front bumper's, along
  * the chord of the step, less the yaw rate's lever). */

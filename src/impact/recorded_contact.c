@@ -165,7 +165,7 @@ static cp_status look_through(replay *self, const cp_recorded_track track[2], bo
             (has_other_speed(self, now[0], 0, time_s) || has_other_speed(self, now[1], 1, time_s)))
             break;
         self->is_over |= is_reported;
-        cp_rectangle rectangle[2] = {cp_footprint_of_state(now[0]), cp_footprint_of_state(now[1])};
+        cp_rectangle rectangle[2] = {cp_vehicle_rectangle(now[0]), cp_vehicle_rectangle(now[1])};
         self->contact->gap_m =
             fmin(self->contact->gap_m, cp_rectangle_separation(&rectangle[0], &rectangle[1]));
         if (were_there && follows) {

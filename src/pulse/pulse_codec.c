@@ -16,11 +16,6 @@
 #define MARK_OF_CODEC_2 0xc2
 #define HEADER_BYTES_MAX (1 + 2 * VARINT_BYTES_MAX + 8)
 
-const double CP_PULSE_RESOLUTION[CP_CHANNEL_COUNT] = {
-    [CP_CHANNEL_AX] = 0.1,     [CP_CHANNEL_AY] = 0.1,         [CP_CHANNEL_VX] = 0.001,
-    [CP_CHANNEL_VY] = 0.001,   [CP_CHANNEL_X] = 0.0001,       [CP_CHANNEL_Y] = 0.0001,
-    [CP_CHANNEL_YAW] = 0.0001, [CP_CHANNEL_YAW_RATE] = 0.001, [CP_CHANNEL_YAW_ACC] = 1.0};
-
 // db/pulse.zdict, embedded: what the differences of most pulses look like.
 extern const unsigned char cp_pulse_dictionary[];
 extern const size_t cp_pulse_dictionary_size;

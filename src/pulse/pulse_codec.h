@@ -2,7 +2,7 @@
 #ifndef PULSE_PULSE_CODEC_H
 #define PULSE_PULSE_CODEC_H
 
-#include "pulse/pulse.h"
+#include "pulse/pulse_resolution.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -21,9 +21,6 @@
 #define CP_PULSE_CODEC 2 /* what is written; both are read. Column pulse.codec */
 #define CP_PULSE_CODEC_INTERVAL_S 1e-3
 #define CP_PULSE_CODEC_SAMPLES_MAX 100000
-
-/* Steps of the channels, in the units of CP_PULSE_COLUMN. */
-extern const double CP_PULSE_RESOLUTION[CP_CHANNEL_COUNT];
 
 /* The record worth keeping of a simulated pulse: accelerations through CFC180 (so that thinning
  * out folds nothing back), then every n-th sample with n the largest that keeps the interval at or

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pulse/pulse_prediction.h"
 
-#include "pulse/pulse_codec.h"
+#include "pulse/pulse_resolution.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -116,6 +116,7 @@ static void judge_window(const cp_pulse *pulse, double time_s, cp_severity *seve
     double mean_x_g = loss_x_m_s / WINDOW_S / CP_G0_M_S2;
     double mean_y_g = loss_y_m_s / WINDOW_S / CP_G0_M_S2;
     severity->max_50ms_g = fmax(severity->max_50ms_g, mean_x_g);
+    severity->max_50ms_y_g = fmax(severity->max_50ms_y_g, fabs(mean_y_g));
     severity->asi_1 =
         fmax(severity->asi_1, hypot(mean_x_g / ASI_LIMIT_X_G, mean_y_g / ASI_LIMIT_Y_G));
 }

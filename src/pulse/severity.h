@@ -5,7 +5,7 @@
 #include "pulse/olc.h"
 #include "pulse/pulse.h"
 
-/* Severity measures of one pulse (shared definitions: README, "What the numbers mean").
+/* Severity measures of one pulse (defined in reports/README.md).
  * End of the crash t_e: separation or, if later, the time of the largest |delta v|, at most 0.5 s.
  * World velocities come from v_x, v_y turned by the heading, in the axes of the initial pose. Means
  * over windows count no acceleration before and after the record. What does not exist is NAN. */
@@ -19,7 +19,11 @@ typedef struct cp_severity {
     double mean_g;           /* (v_x(0) - min v_x) / (g t(min v_x)) */
     double t_v0_s;           /* first v_x <= 0, interpolated; barrier only, else NAN */
     double max_50ms_g;       /* largest 50 ms moving mean of -a_x */
-    double asi_1;            /* acceleration severity index, 50 ms means, (12, 9, 10) g */
+    double max_50ms_y_g;     /* largest 50 ms moving mean of a_y, either way */
+    double asi_1;            /* acceleration severity index of EN 1317-1:1998: largest of
+                              * sqrt((a_x / 12 g)^2 + (a_y / 9 g)^2) of 50 ms means; its third
+                              * part, a_z / 10 g, is 0 in the plane. (The edition of 2010 has a
+                              * 13 Hz filter in place of the means.) */
     double pdof_rad;         /* principal direction of force, vehicle frame */
     double yaw_change_rad_s; /* yaw rate at t_e minus at 0 */
 } cp_severity;

@@ -5,7 +5,6 @@
 #include "core/units.h"
 #include "crash/validity.h"
 #include "report/page.h"
-#include "report/page_data.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -125,7 +124,7 @@ static json_t *severity_json(const cp_animated_run *run, int role)
     double olc_g = frontal ? s->olc.olc_g : NAN;
     char text[CP_VALIDITY_TEXT_SIZE];
     unsigned outside =
-        cp_validity(run->model[0], run->model[1], run->configuration, run->description, role);
+        cp_validity(run->model[0], run->model[1], run->configuration, run->description, role, NULL);
     return json_pack("{s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "contact_side",
                      cp_contact_side_text(run->configuration->side[role]), "validity",
                      cp_validity_text(outside, text), "olc_status", cp_olc_status_text(olc_status),
@@ -217,7 +216,7 @@ static cp_status page_json(const cp_animated_run *run, size_t run_count, json_t 
 static cp_status write_page(const json_t *data, const char *title, const char *path,
                             cp_error *error)
 {
-    char *safe_title = cp_page_escape(title), *json = cp_page_data_text(data);
+    char *safe_title = cp_page_escape(title), *json = cp_page_json_text(data);
     char *notice = cp_page_escape((const char *)cp_page_d3_notice);
     char *page = NULL;
     size_t size = 0;

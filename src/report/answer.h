@@ -2,7 +2,7 @@
 #ifndef REPORT_ANSWER_H
 #define REPORT_ANSWER_H
 
-#include "report/comparison.h"
+#include "analysis/figures.h"
 
 /* A comparison in a few sentences. First a sentence (ended by a new line) for each treatment, its
  * intervals before the estimates; then, behind an empty line, the conditions, each once: what was

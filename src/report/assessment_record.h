@@ -2,7 +2,7 @@
 #ifndef REPORT_ASSESSMENT_RECORD_H
 #define REPORT_ASSESSMENT_RECORD_H
 
-#include "report/study_data.h"
+#include "analysis/study_data.h"
 
 /* The items of an assessment record with what the study's author said of each
  * (store/assessment_items.h), read from the study file as it is stored:

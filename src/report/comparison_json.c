@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/comparison_json.h"
-#include "report/field_comparison.h"
 
-#include "report/query_json.h"
+#include "analysis/query_json.h"
+#include "report/field_json.h"
+#include "report/figure_json.h"
 
 #include <math.h>
 
@@ -14,12 +15,6 @@ static json_t *estimate_json(cp_estimate estimate)
         return json_null();
     return json_pack("{s:s, s:o}", "relation", RELATION[estimate.relation], "value",
                      cp_number_json(estimate.value));
-}
-
-json_t *cp_interval_json(cp_interval interval)
-{
-    return json_pack("{s:s, s:o, s:o}", "status", cp_interval_status_text(interval.status), "low",
-                     cp_number_json(interval.low), "high", cp_number_json(interval.high));
 }
 
 static json_t *description_json(const cp_description *d)
@@ -245,6 +240,13 @@ static json_t *contrast_json(const cp_study_data *data, const cp_contrast_figure
                             json_pack("{s:o, s:o}", "olc_median_difference_g",
                                       model_part_json(&c->median_model), "olc_cliffs_delta",
                                       model_part_json(&c->delta_model)));
+    if (c->class_vehicles[0] > 0)
+        json_object_set_new(
+            object, "class_error",
+            json_pack("{s:o, s:[I, I], s:[I, I]}", "olc_mean_difference_se_g",
+                      cp_number_json(c->class_error_g), "vehicles",
+                      (json_int_t)c->class_vehicles[0], (json_int_t)c->class_vehicles[1], "without",
+                      (json_int_t)c->class_without[0], (json_int_t)c->class_without[1]));
     if (c->field)
         json_object_set_new(object, "field", cp_field_contrast_json(data, c->field));
     return object;

@@ -2,17 +2,15 @@
 #ifndef REPORT_COMPARISON_JSON_H
 #define REPORT_COMPARISON_JSON_H
 
-#include "report/comparison.h"
+#include "analysis/figures.h"
 
 #include <jansson.h>
 
 /* A comparison as JSON, the same for `crashpulse compare --format json` and for reports:
  * {"scenario": name or null, "crash_type": name or null, "baseline": name, "variants": [...],
  * "contrasts": [...]}. An estimate is null or {"relation": "=", "<" or ">", "value": x}; an
- * interval {"status": "value", "low": x, "high": y}, null where it is open. The caller releases
+ * interval as of cp_interval_json. The caller releases
  * it; NULL when memory is gone. */
 json_t *cp_comparison_json(const cp_study_data *data, const cp_comparison *comparison);
-/* An interval as there. */
-json_t *cp_interval_json(cp_interval interval);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/conditions.h"
 
+#include "core/array.h"
 #include "core/memory_stream.h"
 
 #include <stdlib.h>
@@ -34,18 +35,16 @@ static char *lengthened(const char *of, const char *treatment, const char *own)
 
 static cp_condition *append(cp_conditions *c, const char *text, const char *own)
 {
-    cp_condition *longer = realloc(c->condition, (c->count + 1) * sizeof *longer);
-    if (!longer)
+    cp_condition *condition = cp_array_add(c->condition, c->count);
+    if (!condition)
         return NULL;
-    c->condition = longer;
-    cp_condition *condition = &longer[c->count];
     *condition = (cp_condition){.text = strdup(text), .own = own ? strdup(own) : NULL};
     if (!condition->text || (own && !condition->own)) {
         free(condition->text);
         free(condition->own);
+        c->count--;
         return NULL;
     }
-    c->count++;
     return condition;
 }
 

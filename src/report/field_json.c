@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "report/comparison_json.h"
-#include "report/field_comparison.h"
-#include "report/query_json.h"
+#include "report/field_json.h"
+
+#include "analysis/query_json.h"
+#include "report/figure_json.h"
 
 // A figure weighted and not.
 static json_t *both_json(const double value[2], const cp_interval interval[2])

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/field_page.h"
 
-#include "report/field_table.h"
+#include "analysis/field_table.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "report/field_comparison.h"
+#include "report/field_words.h"
 
 #include "core/memory_stream.h"
 

@@ -2,7 +2,7 @@
 #ifndef REPORT_NETWORK_H
 #define REPORT_NETWORK_H
 
-#include "report/study_data.h"
+#include "analysis/study_data.h"
 
 /* The roads of a scenario, to draw crash sites on: lane shapes of the SUMO network that its
  * replications used, found by the path of the sumocfg in their command line, from the folder they

@@ -87,3 +87,25 @@ char *cp_page_escape(const char *text)
         *end = '\0';
     return escaped;
 }
+
+char *cp_page_json_text(const json_t *json)
+{
+    char *text = json_dumps(json, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(10));
+    if (!text)
+        return NULL;
+    // In JSON these three occur inside strings only, where \u003c means the same.
+    size_t size = 1;
+    for (const char *c = text; *c; c++)
+        size += strchr("<>&", *c) ? 6 : 1;
+    char *safe = malloc(size), *end = safe;
+    for (const char *c = text; safe && *c; c++) {
+        if (strchr("<>&", *c))
+            end += sprintf(end, "\\u%04x", (unsigned)*c);
+        else
+            *end++ = *c;
+    }
+    if (safe)
+        *end = '\0';
+    free(text);
+    return safe;
+}

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 
+#include <jansson.h>
 #include <stddef.h>
 
 /* A page template with places to fill: {{name}}. */
@@ -20,5 +21,9 @@ CP_MUST_CHECK cp_status cp_page_fill(const char *template_text, const cp_page_pa
 /* Text that may stand between tags: &, <, > and quotes escaped. The caller frees; NULL when memory
  * is gone. */
 char *cp_page_escape(const char *text);
+
+/* JSON text that may stand in a script element: every <, >, & and character beyond ASCII is
+ * escaped. The caller frees; NULL when memory is gone. */
+char *cp_page_json_text(const json_t *json);
 
 #endif

@@ -1,21 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/page_data.h"
 
+#include "analysis/any_vehicle.h"
+#include "analysis/caveats.h"
+#include "analysis/comparison.h"
+#include "analysis/false_activations.h"
+#include "analysis/network_background.h"
+#include "analysis/query_json.h"
+#include "analysis/slice_sample.h"
 #include "core/rng.h"
 #include "core/units.h"
 #include "report/answer.h"
 #include "report/assessment_record.h"
-#include "report/caveats.h"
 #include "report/comparison_json.h"
 #include "report/example_query.h"
 #include "report/field_page.h"
+#include "report/figure_json.h"
 #include "report/gallery.h"
 #include "report/network.h"
-#include "report/network_background.h"
 #include "report/paired_points.h"
-#include "report/query_json.h"
 #include "report/slice_curves.h"
-#include "report/slice_sample.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -119,15 +123,12 @@ static json_t *vehicles_json(const cp_study_data *data, const bool *drawn)
     }
     // Those of the replications, then what the treatments made of crashes of the baseline; these
     // stand in the scenario and under the type of the baseline's crash.
-    for (size_t k = 0; k < data->vehicle_count + data->treated_count; k++) {
-        bool treated = k >= data->vehicle_count;
-        const cp_study_treated *t = treated ? &data->treated[k - data->vehicle_count] : NULL;
-        const cp_study_vehicle *v = treated ? &t->vehicle : &data->vehicle[k];
-        const cp_study_crash *crash = &data->crash[v->crash];
+    for (size_t k = 0; k < cp_any_vehicle_count(data); k++) {
+        cp_any_vehicle any = cp_any_vehicle_at(data, k);
+        const cp_study_vehicle *v = any.vehicle;
         if (!v->frontal || !drawn[v->crash])
             continue;
-        const cp_study_replication *r = &data->replication[crash->replication];
-        const size_t index[] = {treated ? t->variant : r->variant, r->scenario, crash->crash_type,
+        const size_t index[] = {any.variant, any.replication->scenario, any.crash->crash_type,
                                 v->role == 'b', v->olc};
         const double number[] = {v->olc_g, cp_km_h_from_m_s(v->closing_speed_m_s),
                                  v->lateral_offset_m, cp_deg_from_rad(v->angle_rad)};
@@ -136,8 +137,8 @@ static json_t *vehicles_json(const cp_study_data *data, const bool *drawn)
         for (size_t c = OLC; c <= ANGLE; c++)
             json_array_append_new(column[c], cp_drawn_json(number[c - OLC]));
         json_array_append_new(column[VALIDITY], json_integer((json_int_t)v->validity));
-        json_array_append_new(column[X], cp_drawn_json(treated ? t->x_m : crash->x_m));
-        json_array_append_new(column[Y], cp_drawn_json(treated ? t->y_m : crash->y_m));
+        json_array_append_new(column[X], cp_drawn_json(any.x_m));
+        json_array_append_new(column[Y], cp_drawn_json(any.y_m));
     }
     return object;
 }
@@ -289,6 +290,7 @@ typedef struct page_parts {
     json_t *backgrounds;
     json_t *caveats;
     json_t *assessment;
+    json_t *activations;
     cp_corridor_pulses pulses;
     unsigned char *chosen;
     bool *drawn; /* of each crash */
@@ -325,7 +327,7 @@ static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t b
                             cp_error *error)
 {
     p->slices = json_array();
-    p->chosen = calloc(data->vehicle_count + data->treated_count + 1, sizeof *p->chosen);
+    p->chosen = calloc(cp_any_vehicle_count(data) + 1, sizeof *p->chosen);
     p->drawn = calloc(data->crash_count + 1, sizeof *p->drawn);
     if (!p->slices || !p->chosen || !p->drawn)
         return cp_fail_memory(error, "the data of a report");
@@ -348,6 +350,8 @@ static cp_status make_parts(cp_store *store, const cp_study_data *data, size_t b
         status = caveats_json(store, &p->caveats, error);
     if (status == CP_OK)
         status = cp_assessment_record_json(data, &p->assessment, error);
+    if (status == CP_OK)
+        status = cp_false_activations_json(store, &p->activations, error);
     return status;
 }
 
@@ -362,7 +366,7 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     if (status == CP_OK) {
         *page = json_pack(
             "{s:O, s:O, s:O, s:I, s:o, s:o, s:o, s:o, s:O, s:O, s:o, s:o, s:O, s:O, s:O, s:O, s:O, "
-            "s:o, s:o}",
+            "s:o, s:o, s:O}",
             "assessment", p.assessment, "study",
             json_array_get(json_object_get(data->about, "study"), 0), "about", data->about,
             "unfinished", (json_int_t)data->unfinished, "scenarios", scenarios_json(data),
@@ -375,7 +379,7 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
                       (json_int_t)p.frontal, "pulses", (json_int_t)CP_CORRIDOR_PULSES_MAX),
             "networks", p.networks, "gallery", p.gallery, "pairs", p.pairs, "backgrounds",
             p.backgrounds, "caveats", p.caveats, "risks", risks_json(data), "queries",
-            queries_json());
+            queries_json(), "activations", p.activations);
         if (!*page)
             status = cp_fail_memory(error, "the data of a report");
     }
@@ -389,30 +393,9 @@ cp_status cp_page_data(cp_store *store, const cp_study_data *data, size_t baseli
     json_decref(p.backgrounds);
     json_decref(p.caveats);
     json_decref(p.assessment);
+    json_decref(p.activations);
     cp_corridor_destroy(&p.pulses);
     free(p.chosen);
     free(p.drawn);
     return status;
-}
-
-char *cp_page_data_text(const json_t *page)
-{
-    char *json = json_dumps(page, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(10));
-    if (!json)
-        return NULL;
-    // In JSON these three occur inside strings only, where \u003c means the same.
-    size_t size = 1;
-    for (const char *c = json; *c; c++)
-        size += strchr("<>&", *c) ? 6 : 1;
-    char *safe = malloc(size), *end = safe;
-    for (const char *c = json; safe && *c; c++) {
-        if (strchr("<>&", *c))
-            end += sprintf(end, "\\u%04x", (unsigned)*c);
-        else
-            *end++ = *c;
-    }
-    if (safe)
-        *end = '\0';
-    free(json);
-    return safe;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/paired_points.h"
 
-#include "report/query_json.h"
+#include "analysis/query_json.h"
 
 #include <math.h>
 #include <stdlib.h>

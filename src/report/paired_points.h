@@ -2,7 +2,7 @@
 #ifndef REPORT_PAIRED_POINTS_H
 #define REPORT_PAIRED_POINTS_H
 
-#include "report/study_data.h"
+#include "analysis/study_data.h"
 
 /* What a page draws of the pairs of a study, one by one.
  *

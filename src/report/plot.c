@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/plot.h"
 
+#include "analysis/slice_sample.h"
 #include "core/file.h"
 #include "core/memory_stream.h"
 #include "core/scratch.h"
 #include "report/plot_data.h"
-#include "report/slice_sample.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/plot_data.h"
 
+#include "analysis/any_vehicle.h"
+#include "analysis/convergence.h"
+#include "analysis/corridor.h"
+#include "analysis/slice_sample.h"
 #include "core/units.h"
-#include "report/convergence.h"
-#include "report/gallery.h"
-#include "report/slice_sample.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -146,52 +147,43 @@ cp_status cp_plot_exceedance(cp_plot *p, int what, cp_error *error)
 
 // ---- pulses ------------------------------------------------------------------------------------
 
-static void put_corridor(cp_plot *p, size_t variant, json_t *corridor)
+static void put_corridor(cp_plot *p, size_t variant, const cp_corridor *c)
 {
-    const json_t *p10 = json_object_get(corridor, "p10"), *p50 = json_object_get(corridor, "p50"),
-                 *p90 = json_object_get(corridor, "p90");
     char title[CP_PLOT_TITLE_SIZE];
     snprintf(title, sizeof title, "%.400s, median, 10–90 %%", cp_plot_name(p, variant));
     cp_plot_begin_block(p, variant, title);
-    for (size_t t = 0; t < json_array_size(p50); t++, p->drawn++)
-        fprintf(p->out, "%g\t%g\t%g\t%g\n", 1e3 * CP_CORRIDOR_INTERVAL_S * (double)t,
-                json_number_value(json_array_get(p50, t)),
-                json_number_value(json_array_get(p10, t)),
-                json_number_value(json_array_get(p90, t)));
-    if (json_array_size(p50) == 0)
+    for (size_t t = 0; t < c->points; t++, p->drawn++)
+        fprintf(p->out, "%g\t%g\t%g\t%g\n", 1e3 * CP_CORRIDOR_INTERVAL_S * (double)t, c->p50_g[t],
+                c->p10_g[t], c->p90_g[t]);
+    if (c->points == 0)
         fputs(CP_PLOT_NOTHING, p->out);
 }
 
 // Marks the vehicles of a variant, the study's own and then the treated ones.
 static void choose_vehicles(const cp_plot *p, size_t variant, unsigned char *chosen)
 {
-    const cp_study_data *data = p->data;
-    for (size_t k = 0; k < data->vehicle_count; k++) {
-        const cp_study_crash *crash = &data->crash[data->vehicle[k].crash];
-        chosen[k] = data->replication[crash->replication].variant == variant &&
-                    cp_plot_has_vehicle(p, &data->vehicle[k], k);
+    for (size_t k = 0; k < cp_any_vehicle_count(p->data); k++) {
+        cp_any_vehicle v = cp_any_vehicle_at(p->data, k);
+        chosen[k] =
+            v.variant == variant && cp_plot_has_vehicle(p, v.vehicle, v.treated ? SIZE_MAX : k);
     }
-    for (size_t k = 0; k < data->treated_count; k++)
-        chosen[data->vehicle_count + k] =
-            data->treated[k].variant == variant &&
-            cp_plot_has_vehicle(p, &data->treated[k].vehicle, SIZE_MAX);
 }
 
 cp_status cp_plot_corridor(cp_plot *p, cp_error *error)
 {
     cp_corridor_pulses pulses = {0};
-    size_t vehicles = p->data->vehicle_count + p->data->treated_count;
-    unsigned char *chosen = calloc(vehicles + 1, sizeof *chosen);
+    unsigned char *chosen = calloc(cp_any_vehicle_count(p->data) + 1, sizeof *chosen);
     size_t *variant = calloc(p->data->variant_count + 1, sizeof *variant);
     cp_status status = chosen && variant ? CP_OK : cp_fail_memory(error, "a figure");
     if (status == CP_OK)
         status = cp_corridor_read(p->store, p->data, &pulses, error);
     size_t count = status == CP_OK ? cp_plot_variants(p, variant) : 0;
-    for (size_t k = 0; k < count; k++) {
+    for (size_t k = 0; k < count && status == CP_OK; k++) {
+        cp_corridor corridor;
         choose_vehicles(p, variant[k], chosen);
-        json_t *corridor = cp_corridor_json(&pulses, chosen);
-        put_corridor(p, variant[k], corridor);
-        json_decref(corridor);
+        status = cp_corridor_of(&pulses, chosen, &corridor, error);
+        if (status == CP_OK)
+            put_corridor(p, variant[k], &corridor);
     }
     cp_corridor_destroy(&pulses);
     free(variant);

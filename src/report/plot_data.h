@@ -2,8 +2,8 @@
 #ifndef REPORT_PLOT_DATA_H
 #define REPORT_PLOT_DATA_H
 
-#include "report/judged.h"
-#include "report/plot.h"
+#include "analysis/judged.h"
+#include "report/plot_kind.h"
 
 #include <stdio.h>
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/plot_data.h"
 
+#include "analysis/any_vehicle.h"
+#include "analysis/slice_sample.h"
 #include "core/units.h"
-#include "report/slice_sample.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -29,16 +30,10 @@ static bool coordinates(const cp_study_vehicle *v, double x_m, double y_m, cp_pl
 static bool point_of(const cp_plot *p, size_t k, size_t scenario, size_t variant, cp_plot_kind kind,
                      double xyz[3])
 {
-    const cp_study_data *data = p->data;
-    bool treated = k >= data->vehicle_count;
-    const cp_study_treated *t = treated ? &data->treated[k - data->vehicle_count] : NULL;
-    const cp_study_vehicle *v = treated ? &t->vehicle : &data->vehicle[k];
-    const cp_study_crash *crash = &data->crash[v->crash];
-    const cp_study_replication *r = &data->replication[crash->replication];
-    return (treated ? t->variant : r->variant) == variant &&
-           (scenario == SIZE_MAX || r->scenario == scenario) &&
-           cp_plot_has_vehicle(p, v, treated ? SIZE_MAX : k) &&
-           coordinates(v, treated ? t->x_m : crash->x_m, treated ? t->y_m : crash->y_m, kind, xyz);
+    cp_any_vehicle v = cp_any_vehicle_at(p->data, k);
+    return v.variant == variant && (scenario == SIZE_MAX || v.replication->scenario == scenario) &&
+           cp_plot_has_vehicle(p, v.vehicle, v.treated ? SIZE_MAX : k) &&
+           coordinates(v.vehicle, v.x_m, v.y_m, kind, xyz);
 }
 
 static void put_points(cp_plot *p, size_t scenario, size_t variant, cp_plot_kind kind)
@@ -51,7 +46,7 @@ static void put_points(cp_plot *p, size_t scenario, size_t variant, cp_plot_kind
                  cp_plot_name(p, variant));
     cp_plot_begin_block(p, variant, title);
     fputs(CP_PLOT_NOTHING, p->out);
-    for (size_t k = 0; k < p->data->vehicle_count + p->data->treated_count; k++) {
+    for (size_t k = 0; k < cp_any_vehicle_count(p->data); k++) {
         double xyz[3];
         if (!point_of(p, k, scenario, variant, kind, xyz))
             continue;
@@ -75,7 +70,7 @@ static bool box_of(const cp_plot *p, size_t scenario, const size_t *variant, siz
 {
     double xyz[3];
     *of = (box){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
-    for (size_t k = 0; k < p->data->vehicle_count + p->data->treated_count; k++)
+    for (size_t k = 0; k < cp_any_vehicle_count(p->data); k++)
         for (size_t v = 0; v < count; v++)
             if (point_of(p, k, scenario, variant[v], CP_PLOT_SITES, xyz))
                 for (int d = 0; d < 2; d++) {

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/plot_data.h"
 
+#include "analysis/comparison.h"
+
 #include <math.h>
 #include <stdlib.h>
 

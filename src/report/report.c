@@ -2,7 +2,6 @@
 #include "report/report.h"
 
 #include "core/file.h"
-#include "report/false_activations.h"
 #include "report/page.h"
 #include "report/page_data.h"
 
@@ -13,7 +12,6 @@
 extern const unsigned char cp_page_html[];
 extern const unsigned char cp_page_css[];
 extern const unsigned char cp_page_js[];
-extern const unsigned char cp_page_functions_js[];
 extern const unsigned char cp_page_d3_notice[];
 extern const unsigned char cp_page_d3[];
 extern const unsigned char cp_scorecard_csv[]; /* db/validation/scorecard.csv */
@@ -28,18 +26,17 @@ static const char *cut_conditions(char *answer)
     return line + 2;
 }
 
-static cp_status write_page(const cp_study_data *data, const json_t *page_data,
-                            const json_t *activations, char *answer, const char *path,
-                            cp_error *error)
+static cp_status write_page(const cp_study_data *data, const json_t *page_data, char *answer,
+                            const char *path, cp_error *error)
 {
     char *conditions = cp_page_escape(cut_conditions(answer));
     char *title = cp_page_escape(data->name), *safe_answer = cp_page_escape(answer);
     char *notice = cp_page_escape((const char *)cp_page_d3_notice),
-         *json = cp_page_data_text(page_data), *acts = cp_page_data_text(activations);
+         *json = cp_page_json_text(page_data);
     char *page = NULL;
     size_t size = 0;
     cp_status status;
-    if (!title || !safe_answer || !conditions || !notice || !json || !acts) {
+    if (!title || !safe_answer || !conditions || !notice || !json) {
         status = cp_fail_memory(error, "a report");
         goto done;
     }
@@ -53,8 +50,6 @@ static cp_status write_page(const cp_study_data *data, const json_t *page_data,
         {"d3_notice", notice},
         {"script", (const char *)cp_page_js},
         {"data", json},
-        {"activations", acts},
-        {"functions_script", (const char *)cp_page_functions_js},
         {"scorecard", (const char *)cp_scorecard_csv},
     };
     status = cp_page_fill((const char *)cp_page_html, parts, sizeof parts / sizeof *parts, &page,
@@ -64,7 +59,6 @@ static cp_status write_page(const cp_study_data *data, const json_t *page_data,
 
 done:
     free(page);
-    free(acts);
     free(json);
     free(notice);
     free(safe_answer);
@@ -77,7 +71,7 @@ cp_status cp_report_write(cp_store *store, const char *baseline, json_t *control
                           cp_error *error)
 {
     cp_study_data data;
-    json_t *page_data = NULL, *activations = NULL;
+    json_t *page_data = NULL;
     char *answer = NULL;
     size_t variant = 0;
     cp_comparison_options options = cp_comparison_options_default();
@@ -97,11 +91,8 @@ cp_status cp_report_write(cp_store *store, const char *baseline, json_t *control
     if (status == CP_OK && controls && json_object_set(page_data, "controls", controls) != 0)
         status = cp_fail_memory(error, "a report");
     if (status == CP_OK)
-        status = cp_false_activations_json(store, &activations, error);
-    if (status == CP_OK)
-        status = write_page(&data, page_data, activations, answer, path, error);
+        status = write_page(&data, page_data, answer, path, error);
     json_decref(page_data);
-    json_decref(activations);
     free(answer);
     cp_model_ensemble_destroy(&ensemble);
     cp_study_data_destroy(&data);

@@ -1,21 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/slice_curves.h"
 
+#include "analysis/any_vehicle.h"
+#include "analysis/convergence.h"
+#include "analysis/judged.h"
+#include "analysis/query_json.h"
+#include "analysis/slice_sample.h"
 #include "core/units.h"
-#include "report/convergence.h"
-#include "report/judged.h"
-#include "report/query_json.h"
-#include "report/slice_sample.h"
+#include "report/figure_json.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #define ECDF_POINTS 240
-
-json_t *cp_drawn_json(double value)
-{
-    return cp_number_json(round(value * 1e4) / 1e4);
-}
 
 // Steps of a distribution function: [[x, …], [share up to x, …]], thinned out to ECDF_POINTS;
 // censored vehicles lie below the first x. factor: of the unit that is drawn.
@@ -63,25 +60,35 @@ static cp_status add_distributions(const cp_slice_curves *e, cp_slice slice, siz
     return status;
 }
 
-static size_t variant_of(const cp_study_data *data, const cp_study_vehicle *v)
+static json_t *points_json(const double *g, size_t count)
 {
-    return data->replication[data->crash[v->crash].replication].variant;
+    json_t *points = json_array();
+    for (size_t t = 0; t < count; t++)
+        json_array_append_new(points, json_real(g[t]));
+    return points;
 }
 
-// The pulses of a variant's vehicles in a slice, of its own crashes and of treated ones.
-static json_t *corridor_json(const cp_slice_curves *e, cp_slice slice, size_t variant, int scope)
+// {"n", "p10": […], "p50": […], "p90": […]} of the pulses of a variant's vehicles in a slice, of
+// its own crashes and of treated ones, put into the object under the scope's name.
+static cp_status add_corridor(const cp_slice_curves *e, cp_slice slice, size_t variant, int scope,
+                              json_t *object, cp_error *error)
 {
     const cp_study_data *data = e->data;
-    for (size_t k = 0; k < data->vehicle_count + data->treated_count; k++) {
-        bool treated = k >= data->vehicle_count;
-        const cp_study_treated *t = treated ? &data->treated[k - data->vehicle_count] : NULL;
-        const cp_study_vehicle *v = treated ? &t->vehicle : &data->vehicle[k];
-        size_t own = treated ? t->variant : variant_of(data, v);
-        e->chosen[k] = v->frontal && own == variant &&
-                       (scope == CP_SCOPE_ALL || v->validity == 0) &&
-                       cp_slice_has_crash(data, slice, &data->crash[v->crash]);
+    for (size_t k = 0; k < cp_any_vehicle_count(data); k++) {
+        cp_any_vehicle v = cp_any_vehicle_at(data, k);
+        e->chosen[k] = v.vehicle->frontal && v.variant == variant &&
+                       (scope == CP_SCOPE_ALL || v.vehicle->validity == 0) &&
+                       cp_slice_has_crash(data, slice, v.crash);
     }
-    return cp_corridor_json(e->pulses, e->chosen);
+    cp_corridor c;
+    cp_status status = cp_corridor_of(e->pulses, e->chosen, &c, error);
+    if (status == CP_OK)
+        json_object_set_new(object, CP_SCOPE_TEXT[scope],
+                            json_pack("{s:I, s:o, s:o, s:o}", "n", (json_int_t)c.pulses, "p10",
+                                      points_json(c.p10_g, c.points), "p50",
+                                      points_json(c.p50_g, c.points), "p90",
+                                      points_json(c.p90_g, c.points)));
+    return status;
 }
 
 static cp_status add_variants(const cp_slice_curves *e, const cp_comparison *comparison,
@@ -97,10 +104,10 @@ static cp_status add_variants(const cp_slice_curves *e, const cp_comparison *com
         json_object_set_new(variant, "corridor", to.corridor);
         for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
             cp_status status = add_distributions(e, comparison->slice, own, scope, &to, error);
+            if (status == CP_OK)
+                status = add_corridor(e, comparison->slice, own, scope, to.corridor, error);
             if (status != CP_OK)
                 return status;
-            json_object_set_new(to.corridor, CP_SCOPE_TEXT[scope],
-                                corridor_json(e, comparison->slice, own, scope));
         }
     }
     return CP_OK;
@@ -161,12 +168,14 @@ static cp_status add_judged(const cp_slice_curves *e, const cp_comparison *compa
     for (size_t k = 0; k < comparison->counterfactual_count; k++) {
         size_t variant = comparison->counterfactual[k].variant;
         json_t *corridor = json_object();
-        for (int scope = 0; scope < CP_SCOPE_COUNT; scope++)
-            json_object_set_new(corridor, CP_SCOPE_TEXT[scope],
-                                corridor_json(e, comparison->slice, variant, scope));
         json_array_append_new(treated,
                               json_pack("{s:s, s:o}", "variant", e->data->variant[variant].name,
                                         "corridor", corridor));
+        for (int scope = 0; scope < CP_SCOPE_COUNT; scope++) {
+            cp_status status = add_corridor(e, comparison->slice, variant, scope, corridor, error);
+            if (status != CP_OK)
+                return status;
+        }
     }
     return CP_OK;
 }

@@ -2,8 +2,8 @@
 #ifndef REPORT_SLICE_CURVES_H
 #define REPORT_SLICE_CURVES_H
 
-#include "report/comparison.h"
-#include "report/gallery.h"
+#include "analysis/corridor.h"
+#include "analysis/figures.h"
 
 /* What a page draws of a slice as curves, besides its comparison. */
 
@@ -18,7 +18,8 @@ typedef struct cp_slice_curves {
 /* Add to the JSON object of a comparison:
  *
  * to each of "variants": "ecdf" (of OLC, g) and "ecdf_delta_v_km_h", each {"all": {"x": […],
- * "share": […], "n", "censored"}, "inside": …}; "corridor" likewise (gallery.h).
+ * "share": […], "n", "censored"}, "inside": …}; "corridor" likewise,
+ * {"n", "p10": […], "p50": […], "p90": […]} (analysis/corridor.h).
  *
  * counterfactual design: "judged": {"all": {"crashes", "left_out", "variants": [{"variant",
  * "avoided", "olc": curve, "delta_v": curve}]}, "inside": …} (judged.h), curve = {"ecdf",
@@ -31,8 +32,5 @@ typedef struct cp_slice_curves {
 CP_MUST_CHECK cp_status cp_slice_curves_add(const cp_slice_curves *curves,
                                             const cp_comparison *comparison, json_t *object,
                                             cp_error *error);
-
-/* Digits enough to draw: to a ten-thousandth. */
-json_t *cp_drawn_json(double value);
 
 #endif

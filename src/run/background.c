@@ -9,8 +9,8 @@
 
 // ---- simulating ----------------------------------------------------------------------------
 
-static cp_status add_contact(const cp_found_contact *found, cp_background_rows *rows,
-                             cp_error *error)
+static cp_status add_contact(const cp_traffic *traffic, const cp_found_contact *found,
+                             cp_background_rows *rows, cp_error *error)
 {
     const cp_impact *impact = &found->impact;
     cp_background_contact_row *row = cp_background_rows_add_contact(rows);
@@ -18,7 +18,7 @@ static cp_status add_contact(const cp_found_contact *found, cp_background_rows *
         return cp_fail_memory(error, "background");
     *row = (cp_background_contact_row){.time_s = impact->time_s,
                                        .contact_m = impact->contact_m,
-                                       .reason = found->found_as,
+                                       .reason = cp_found_as_text(found->found_as),
                                        .crash_type = "",
                                        .closing_speed_m_s = NAN,
                                        .lateral_offset_m = NAN,
@@ -32,7 +32,7 @@ static cp_status add_contact(const cp_found_contact *found, cp_background_rows *
         row->angle_rad = description.angle_rad;
     }
     for (int role = 0; role < 2; role++) {
-        row->vehicle[role] = strdup(sumo_bridge_vehicle_id(impact->vehicle[role]));
+        row->vehicle[role] = strdup(cp_traffic_vehicle_id(traffic, impact->vehicle[role]));
         if (row->vehicle[role] == NULL)
             return cp_fail_memory(error, "background");
     }
@@ -46,36 +46,32 @@ static cp_status fill_rows(const cp_simulation *simulation, cp_background_rows *
     rows->vehicle_km = counted.vehicle_km;
     rows->vehicle_h = counted.vehicle_h;
     rows->departed = counted.departed;
-    rows->sumo_version = strdup(sumo_bridge_version());
-    rows->sumo_command_line = strdup(sumo_bridge_command_line());
+    rows->sumo_version = strdup(cp_traffic_version(simulation->traffic));
+    rows->sumo_command_line = strdup(cp_traffic_command_line(simulation->traffic));
     if (rows->sumo_version == NULL || rows->sumo_command_line == NULL)
         return cp_fail_memory(error, "background");
     cp_status status = CP_OK;
     for (size_t k = 0; status == CP_OK && k < simulation->found_count; k++)
-        status = add_contact(&simulation->found[k], rows, error);
+        status = add_contact(simulation->traffic, &simulation->found[k], rows, error);
     return status;
 }
 
 cp_status cp_background_run(const cp_background_options *options, cp_background_rows *rows,
                             cp_cross_check *check, cp_error *error)
 {
-    // A study of one scenario without errors and one variant without functions, whose name, which
-    // files that SUMO writes begin with, no variant can have.
-    cp_study_scenario scenario = *options->scenario;
-    scenario.driver_errors = NULL;
-    scenario.driver_error_count = 0;
-    cp_study_variant variant = {.name = (char *)"@background"};
-    cp_study study = {.seed = options->seed,
-                      .step_length_s = options->step_length_s,
-                      .warmup_s = options->warmup_s,
-                      .stay_s = options->stay_s};
+    // Neither driver errors nor functions.
+    cp_simulation_settings settings = {.sumo = options->sumo,
+                                       .study_seed = options->seed,
+                                       .seed = options->seed,
+                                       .step_length_s = options->step_length_s,
+                                       .warmup_s = options->warmup_s,
+                                       .stay_s = options->stay_s};
     cp_simulation simulation = {0};
     rows->scenario = options->network;
     rows->seed = options->seed;
     rows->step_length_s = options->step_length_s;
     long long steps = llround(options->duration_s / options->step_length_s), done = 0;
-    cp_status status =
-        cp_simulation_begin(&study, &scenario, &variant, options->seed, &simulation, error);
+    cp_status status = cp_simulation_begin(&settings, &simulation, error);
     while (status == CP_OK && done < steps &&
            (done == 0 || !cp_traffic_finished(simulation.traffic))) {
         status = cp_simulation_step(&simulation, error);
@@ -136,7 +132,8 @@ cp_status cp_background_write_json(const cp_background_rows *rows, const cp_cros
             json_array_append_new(crashes, crash_json(contact));
     }
     for (size_t k = 0; k < check->sumo_count; k++)
-        count(reports, "found_as", check->sumo[k].found_as, NULL, NULL, "collisions");
+        count(reports, "found_as", cp_found_as_text(check->sumo[k].found_as), NULL, NULL,
+              "collisions");
     json_t *result =
         json_pack("{s:s, s:I, s:f, s:f, s:f, s:f, s:I, s:o, s:o, s:o}", "network", rows->scenario,
                   "seed", (json_int_t)rows->seed, "step_length_s", rows->step_length_s,

@@ -3,16 +3,16 @@
 #define RUN_BACKGROUND_H
 
 #include "run/cross_check.h"
+#include "run/sumo_words.h"
 #include "store/background_rows.h"
-#include "study/study_file.h"
 
 /* The background of a network: what contacts its traffic makes without any driver error or
  * function. What is found there in a study is the network's doing, not the drivers'. In the worker
  * process only. */
 
 typedef struct cp_background_options {
-    const char *network;               /* name for the result; borrowed by the rows */
-    const cp_study_scenario *scenario; /* its driver errors are left out */
+    const char *network; /* name for the result; borrowed by the rows */
+    cp_sumo_start sumo;
     uint64_t seed;
     double step_length_s;
     double duration_s; /* warm-up included */

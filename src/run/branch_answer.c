@@ -34,36 +34,50 @@ static bool send_participants(int to, const cp_participant_rows *rows)
             cp_branch_write(to, rows->function, rows->function_count * sizeof *rows->function));
 }
 
-bool cp_branch_answer_send(int to, const cp_found_contact *first, const cp_sample_row *sample,
-                           size_t sample_count, const cp_found_contact *const *others,
-                           size_t other_count)
+// Who the two cars of the crash are.
+static bool send_cars(int to, const cp_traffic *traffic, const cp_impact *impact)
+{
+    bool sent = true;
+    for (int role = 0; sent && role < 2; role++)
+        sent = send_text(to, cp_traffic_vehicle_id(traffic, impact->vehicle[role])) &&
+               send_text(to, cp_traffic_type_id(traffic, impact->state[role].type)) &&
+               send_text(to, cp_traffic_lane_id(traffic, impact->state[role].lane));
+    return sent;
+}
+
+static bool send_other(int to, const cp_traffic *traffic, const cp_impact *impact)
+{
+    return cp_branch_write(to, &impact->time_s, sizeof impact->time_s) &&
+           send_text(to, cp_traffic_vehicle_id(traffic, impact->vehicle[0])) &&
+           send_text(to, cp_traffic_vehicle_id(traffic, impact->vehicle[1]));
+}
+
+cp_status cp_branch_answer_send(int to, const cp_traffic *traffic, const cp_found_contact *first,
+                                const cp_sample_row *sample, size_t sample_count,
+                                const cp_found_contact *const *others, size_t other_count,
+                                cp_error *error)
 {
     answer_head head = {
         .sample_count = sample_count, .other_count = other_count, .has_crash = first != NULL};
+    cp_status status = CP_OK;
     if (first != NULL)
         head.found = *first;
-    for (int role = 0; first != NULL && role < 2; role++) {
-        cp_error error = {0};
-        if (sumo_bridge_type(sumo_bridge_type_id(first->impact.state[role].type), &head.type[role],
-                             &error) != CP_OK)
-            return false;
-    }
+    for (int role = 0; status == CP_OK && first != NULL && role < 2; role++)
+        status =
+            cp_traffic_type(traffic, cp_traffic_type_id(traffic, first->impact.state[role].type),
+                            &head.type[role], error);
+    if (status != CP_OK)
+        return status;
     bool sent = cp_branch_write(to, &head, sizeof head);
     if (sent && first != NULL)
         sent = send_participants(to, &first->participants);
     if (sent && sample_count > 0)
         sent = cp_branch_write(to, sample, sample_count * sizeof *sample);
-    for (int role = 0; sent && first != NULL && role < 2; role++)
-        sent = send_text(to, sumo_bridge_vehicle_id(first->impact.vehicle[role])) &&
-               send_text(to, sumo_bridge_type_id(first->impact.state[role].type)) &&
-               send_text(to, sumo_bridge_lane_id(first->impact.state[role].lane));
-    for (size_t k = 0; sent && k < other_count; k++) {
-        const cp_impact *impact = &others[k]->impact;
-        sent = cp_branch_write(to, &impact->time_s, sizeof impact->time_s) &&
-               send_text(to, sumo_bridge_vehicle_id(impact->vehicle[0])) &&
-               send_text(to, sumo_bridge_vehicle_id(impact->vehicle[1]));
-    }
-    return sent;
+    if (sent && first != NULL)
+        sent = send_cars(to, traffic, &first->impact);
+    for (size_t k = 0; sent && k < other_count; k++)
+        sent = send_other(to, traffic, &others[k]->impact);
+    return sent ? CP_OK : cp_fail(error, CP_RUN_FAILED, "the answer could not be sent");
 }
 
 // The text at *at and past it; NULL when it does not end before end.
@@ -105,16 +119,17 @@ bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *ans
         return false;
     *answer = (cp_branch_answer){.has_crash = head.has_crash,
                                  .found = head.found,
-                                 .type = {head.type[0], head.type[1]},
                                  .sample = (const cp_sample_row *)(const void *)at,
                                  .sample_count = head.sample_count,
                                  .other_count = head.other_count};
     at += head.sample_count * sizeof(cp_sample_row);
     for (int role = 0; head.has_crash && role < 2; role++) {
-        answer->ids[role] = take_text(&at, end);
-        answer->types[role] = take_text(&at, end);
-        answer->lanes[role] = take_text(&at, end);
-        if (answer->ids[role] == NULL || answer->types[role] == NULL || answer->lanes[role] == NULL)
+        cp_branch_car *car = &answer->car[role];
+        car->id = take_text(&at, end);
+        car->type_id = take_text(&at, end);
+        car->lane = take_text(&at, end);
+        car->type = head.type[role];
+        if (car->id == NULL || car->type_id == NULL || car->lane == NULL)
             return false;
     }
     answer->others = at;
@@ -127,6 +142,18 @@ bool cp_branch_answer_read(const void *bytes, size_t size, cp_branch_answer *ans
                 return false;
     }
     return at == end;
+}
+
+void cp_branch_answer_swap_roles(cp_branch_answer *answer)
+{
+    const cp_found_car found = answer->found.car[0];
+    const cp_branch_car car = answer->car[0];
+    cp_impact_swap_roles(&answer->found.impact);
+    answer->found.car[0] = answer->found.car[1];
+    answer->found.car[1] = found;
+    answer->car[0] = answer->car[1];
+    answer->car[1] = car;
+    answer->is_swapped = !answer->is_swapped;
 }
 
 cp_other_crash cp_branch_answer_other(const cp_branch_answer *answer, const char **at)

@@ -9,11 +9,6 @@
 
 #define TTC_HORIZON_S 10.0
 
-const cp_study_variant *cp_branch_treatment(const cp_study *study, size_t number)
-{
-    return &study->variants[number < cp_study_baseline(study) ? number : number + 1];
-}
-
 bool cp_branch_is_same_pair(const char *const one[2], const char *const other[2])
 {
     return (strcmp(one[0], other[0]) == 0 && strcmp(one[1], other[1]) == 0) ||
@@ -30,17 +25,23 @@ typedef struct branch_run {
     size_t sample_count;
 } branch_run;
 
-static bool is_of_pair(const cp_branch_request *request, uint32_t vehicle)
+static const char *id_of(const branch_run *run, uint32_t vehicle)
 {
-    const char *id = sumo_bridge_vehicle_id(vehicle);
-    return strcmp(id, request->ids[0]) == 0 || strcmp(id, request->ids[1]) == 0;
+    return cp_traffic_vehicle_id(run->world->simulation->traffic, vehicle);
+}
+
+static bool is_of_pair(const branch_run *run, uint32_t vehicle)
+{
+    const char *id = id_of(run, vehicle);
+    return strcmp(id, run->request->ids[0]) == 0 || strcmp(id, run->request->ids[1]) == 0;
 }
 
 // Whether one of the two had this crash in the baseline too, before theirs.
-static bool is_earlier_crash(const cp_branch_request *request, const cp_found_contact *found)
+static bool is_earlier_crash(const branch_run *run, const cp_found_contact *found)
 {
-    const char *ids[2] = {sumo_bridge_vehicle_id(found->impact.vehicle[0]),
-                          sumo_bridge_vehicle_id(found->impact.vehicle[1])};
+    const char *ids[2] = {id_of(run, found->impact.vehicle[0]),
+                          id_of(run, found->impact.vehicle[1])};
+    const cp_branch_request *request = run->request;
     for (size_t k = 0; k < request->earlier_count; k++) {
         const cp_earlier_crash *earlier = &request->earlier[k];
         const char *pair[2] = {request->ids[earlier->role], earlier->opponent};
@@ -50,10 +51,9 @@ static bool is_earlier_crash(const cp_branch_request *request, const cp_found_co
     return false;
 }
 
-static bool involves_pair(const cp_branch_request *request, const cp_found_contact *found)
+static bool involves_pair(const branch_run *run, const cp_found_contact *found)
 {
-    return is_of_pair(request, found->impact.vehicle[0]) ||
-           is_of_pair(request, found->impact.vehicle[1]);
+    return is_of_pair(run, found->impact.vehicle[0]) || is_of_pair(run, found->impact.vehicle[1]);
 }
 
 // Look at the contacts of the step for the first crash of one of the two that it is about.
@@ -62,8 +62,8 @@ static void look_for_crash(branch_run *run)
     const cp_simulation *simulation = run->world->simulation;
     for (; run->seen < simulation->found_count; run->seen++) {
         const cp_found_contact *found = &simulation->found[run->seen];
-        if (run->first_index == 0 && cp_found_is_crash(found) &&
-            involves_pair(run->request, found) && !is_earlier_crash(run->request, found))
+        if (run->first_index == 0 && cp_found_is_crash(found) && involves_pair(run, found) &&
+            !is_earlier_crash(run, found))
             run->first_index = run->seen + 1;
     }
 }
@@ -78,7 +78,7 @@ static void sample(branch_run *run)
     const cp_vehicle_motion *all = cp_traffic_motions(traffic, &count);
     for (size_t k = 0; k < count; k++)
         for (int role = 0; role < 2; role++)
-            if (strcmp(sumo_bridge_vehicle_id(all[k].after.vehicle), run->request->ids[role]) == 0)
+            if (strcmp(id_of(run, all[k].after.vehicle), run->request->ids[role]) == 0)
                 motions[role] = &all[k];
     double ttc_s = NAN;
     if (motions[0] != NULL && motions[1] != NULL) {
@@ -110,8 +110,8 @@ static cp_status run_steps(branch_run *run, bool is_null, cp_error *error)
 {
     cp_simulation *simulation = run->world->simulation;
     double contact_s = run->request->contact_s;
-    double window_s = run->world->study->counterfactual.time_series_s;
-    double end_s = contact_s + (is_null ? 1.0 : run->world->study->counterfactual.horizon_s);
+    double window_s = run->world->treatments->timing.time_series_s;
+    double end_s = contact_s + (is_null ? 1.0 : run->world->treatments->timing.horizon_s);
     cp_status status = CP_OK;
     while (status == CP_OK && cp_traffic_time_s(simulation->traffic) < end_s &&
            !(is_null && run->first_index > 0)) {
@@ -125,10 +125,10 @@ static cp_status run_steps(branch_run *run, bool is_null, cp_error *error)
 }
 
 // First crash within the horizon, and the crashes between others.
-static bool send_answer(const branch_run *run, int to)
+static cp_status send_answer(const branch_run *run, int to, cp_error *error)
 {
     const cp_simulation *simulation = run->world->simulation;
-    double horizon_s = run->request->contact_s + run->world->study->counterfactual.horizon_s;
+    double horizon_s = run->request->contact_s + run->world->treatments->timing.horizon_s;
     const cp_found_contact *first =
         run->first_index > 0 ? &simulation->found[run->first_index - 1] : NULL;
     if (first != NULL && first->impact.time_s > horizon_s)
@@ -136,52 +136,52 @@ static bool send_answer(const branch_run *run, int to)
     const cp_found_contact **others = calloc(simulation->found_count + 1, sizeof *others);
     size_t other_count = 0;
     if (others == NULL)
-        return false;
+        return cp_fail_memory(error, "crashes of a branch");
     for (size_t k = run->begun_at; k < simulation->found_count; k++) {
         const cp_found_contact *found = &simulation->found[k];
-        if (cp_found_is_crash(found) && !involves_pair(run->request, found) &&
+        if (cp_found_is_crash(found) && !involves_pair(run, found) &&
             found->impact.time_s <= horizon_s)
             others[other_count++] = found;
     }
-    bool sent = cp_branch_answer_send(to, first, run->world->samples, run->sample_count, others,
-                                      other_count);
+    cp_status status = cp_branch_answer_send(to, simulation->traffic, first, run->world->samples,
+                                             run->sample_count, others, other_count, error);
     free(others);
-    return sent;
+    return status;
 }
 
-int cp_branch_run(void *context, size_t number, const void *request, size_t size, int answer)
+cp_status cp_branch_run(void *context, size_t number, const void *request, size_t size, int answer,
+                        cp_error *error)
 {
     const cp_branch_world *world = context;
+    const cp_treatments *treatments = world->treatments;
     cp_simulation *simulation = world->simulation;
-    cp_error error = {0};
     branch_run run = {.world = world,
                       .request = request,
                       .begun_at = simulation->found_count,
                       .seen = simulation->found_count};
     if (size < cp_branch_request_size(0) ||
         size != cp_branch_request_size(run.request->earlier_count))
-        return 1;
+        return cp_fail(error, CP_RUN_FAILED, "a branch's request is damaged");
 
     // Number 0 changes nothing.
+    cp_status status = CP_OK;
     if (number > 0) {
-        const cp_study_variant *variant = cp_branch_treatment(world->study, number - 1);
+        const cp_treatment *treatment = &treatments->treatment[number - 1];
         const char *ids[2] = {run.request->ids[0], run.request->ids[1]};
-        if (cp_controls_add_treatment(simulation->controls, variant->functions,
-                                      variant->function_count, world->study->seed, world->seed, ids,
-                                      &error) != CP_OK)
-            return 1;
+        status = cp_controls_add_treatment(simulation->controls, treatment->functions,
+                                           treatment->function_count, treatments->study_seed,
+                                           treatments->seed, ids, error);
     }
-    if (run_steps(&run, number == 0, &error) != CP_OK)
-        return 1;
-    return send_answer(&run, answer) ? 0 : 1;
+    if (status == CP_OK)
+        status = run_steps(&run, number == 0, error);
+    return status == CP_OK ? send_answer(&run, answer, error) : status;
 }
 
-int cp_branch_advance(void *context, double time_s)
+cp_status cp_branch_advance(void *context, double time_s, cp_error *error)
 {
     const cp_branch_world *world = context;
-    cp_error error = {0};
     cp_status status = CP_OK;
     while (status == CP_OK && cp_traffic_time_s(world->simulation->traffic) < time_s)
-        status = cp_simulation_step(world->simulation, &error);
-    return status == CP_OK ? 0 : 1;
+        status = cp_simulation_step(world->simulation, error);
+    return status;
 }

@@ -32,6 +32,7 @@ struct cp_checkpoints {
     frozen *slots;     /* copies */
     size_t slot_count; /* one more than the checkpoints that can be branched from */
     char *request;     /* options.request_max bytes, in a copy */
+    cp_error *said;    /* shared with all copies: why the guide or branch at work fails */
     char *arena;       /* answers, one behind the other */
     size_t arena_used;
 };
@@ -46,6 +47,7 @@ typedef struct request_head {
 typedef struct answer_head {
     int wait_status;
     size_t size;
+    char error[CP_BRANCH_FAILURE_SIZE]; /* "" unless it said why it fails */
 } answer_head;
 
 cp_checkpoint_options cp_checkpoint_options_default(void)
@@ -63,7 +65,21 @@ static _Noreturn void run_branch(const cp_checkpoints *self, pid_t parent, size_
     if (!cp_branch_follow(parent) || !cp_branch_isolate(answer, -1) ||
         !cp_branch_limit(options->cpu_s, options->wall_s))
         _exit(1);
-    _exit(options->branch(options->context, number, self->request, size, answer) == 0 ? 0 : 1);
+    _exit(options->branch(options->context, number, self->request, size, answer, self->said) ==
+                  CP_OK
+              ? 0
+              : 1);
+}
+
+// Nobody has said anything yet; what was said is the last of a head's process.
+static void forget_said(const cp_checkpoints *self)
+{
+    *self->said = (cp_error){0};
+}
+
+static void take_said(const cp_checkpoints *self, answer_head *head)
+{
+    snprintf(head->error, sizeof head->error, "%.*s", CP_BRANCH_FAILURE_SIZE - 1, self->said->text);
 }
 
 // Everything a branch says until it closes its end, behind the answers known already.
@@ -88,6 +104,7 @@ static bool serve_branch(const cp_checkpoints *self, size_t number, size_t size,
     pid_t self_pid = getpid();
     if (pipe(ends) != 0)
         return false;
+    forget_said(self);
     pid_t pid = fork();
     if (pid == 0)
         run_branch(self, self_pid, number, size, ends[1]);
@@ -96,6 +113,7 @@ static bool serve_branch(const cp_checkpoints *self, size_t number, size_t size,
         head.size = read_answer(self, ends[0]);
         while (waitpid(pid, &head.wait_status, 0) < 0 && errno == EINTR)
             continue;
+        take_said(self, &head);
     }
     close(ends[0]);
     return cp_branch_write(channel, &head, sizeof head) &&
@@ -118,7 +136,7 @@ static _Noreturn void guide(const cp_checkpoints *self, pid_t copy, const reques
     char arrived = 1;
     if (!cp_branch_follow(copy) || !cp_branch_isolate(channel, arrival) ||
         !cp_branch_limit(options->cpu_s, options->wall_s) ||
-        options->advance(options->context, head->time_s) != 0 ||
+        options->advance(options->context, head->time_s, self->said) != CP_OK ||
         !cp_branch_write(arrival, &arrived, 1))
         _exit(1);
     close(arrival);
@@ -136,6 +154,7 @@ static bool serve_guided(const cp_checkpoints *self, const request_head *head, i
     pid_t self_pid = getpid();
     if (pipe(ends) != 0)
         return false;
+    forget_said(self);
     pid_t pid = fork();
     if (pid == 0)
         guide(self, self_pid, head, channel, ends[1]);
@@ -147,6 +166,7 @@ static bool serve_guided(const cp_checkpoints *self, const request_head *head, i
     if (alive)
         return lost.wait_status == 0;
     alive = true;
+    take_said(self, &lost);
     for (size_t k = 0; alive && k < head->branches; k++)
         alive = cp_branch_write(channel, &lost, sizeof lost);
     return alive;
@@ -188,6 +208,8 @@ void cp_checkpoints_destroy(cp_checkpoints *self)
         end_frozen(&self->slots[k]);
     if (self->arena != NULL)
         munmap(self->arena, ARENA_BYTES);
+    if (self->said != NULL)
+        munmap(self->said, sizeof *self->said);
     free(self->request);
     free(self->slots);
     free(self->times);
@@ -209,8 +231,11 @@ cp_status cp_checkpoints_create(const cp_checkpoint_options *options, cp_checkpo
     void *arena = mmap(NULL, ARENA_BYTES, PROT_READ | PROT_WRITE,
                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     self->arena = arena != MAP_FAILED ? arena : NULL;
+    void *said =
+        mmap(NULL, sizeof *self->said, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    self->said = said != MAP_FAILED ? said : NULL;
     if (self->slots == NULL || self->times == NULL || self->request == NULL ||
-        self->arena == NULL) {
+        self->arena == NULL || self->said == NULL) {
         cp_checkpoints_destroy(self);
         return cp_fail_memory(error, "checkpoints");
     }
@@ -301,8 +326,9 @@ bool cp_checkpoints_find(const cp_checkpoints *self, double latest_s, double *ti
     return false;
 }
 
-static void explain(int wait_status, cp_branch_end *end)
+static void explain(const answer_head *head, cp_branch_end *end)
 {
+    int wait_status = head->wait_status;
     if (wait_status == -1)
         snprintf(end->failure, sizeof end->failure, "could not be started");
     else if (WIFSIGNALED(wait_status) && WTERMSIG(wait_status) == SIGALRM)
@@ -313,7 +339,8 @@ static void explain(int wait_status, cp_branch_end *end)
         snprintf(end->failure, sizeof end->failure, "ended by signal %d (%s)",
                  WTERMSIG(wait_status), strsignal(WTERMSIG(wait_status)));
     else if (WEXITSTATUS(wait_status) != 0)
-        snprintf(end->failure, sizeof end->failure, "failed");
+        snprintf(end->failure, sizeof end->failure, "failed%s%.*s",
+                 head->error[0] != '\0' ? ": " : "", CP_BRANCH_FAILURE_SIZE - 9, head->error);
 }
 
 static bool take_answer(cp_checkpoints *self, int channel, cp_branch_end *end)
@@ -324,7 +351,7 @@ static bool take_answer(cp_checkpoints *self, int channel, cp_branch_end *end)
         head.size > ARENA_BYTES - self->arena_used ||
         !cp_branch_read(channel, self->arena + self->arena_used, head.size))
         return false;
-    explain(head.wait_status, end);
+    explain(&head, end);
     end->answered = end->failure[0] == '\0';
     end->answer = self->arena + self->arena_used;
     end->answer_size = head.size;

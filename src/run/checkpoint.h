@@ -34,24 +34,26 @@ typedef struct cp_checkpoint_options {
     unsigned wall_s;    /* wall time of a guide's way or a branch, at most */
     size_t request_max; /* bytes of the largest request */
     /* Runs in a branch's process: number of the branch, the request, and where to send the answer
-     * (cp_branch_write). Only what it returns and the answer matter; 0 is success. */
-    int (*branch)(void *context, size_t number, const void *request, size_t size, int answer);
-    /* Runs in a guide's process: go on, changing nothing, to the checkpoint of time_s. 0 is
-     * success.
-     */
-    int (*advance)(void *context, double time_s);
+     * (cp_branch_write). Only the answer matters and, when it fails, its error. */
+    cp_status (*branch)(void *context, size_t number, const void *request, size_t size, int answer,
+                        cp_error *error);
+    /* Runs in a guide's process: go on, changing nothing, to the checkpoint of time_s. */
+    cp_status (*advance)(void *context, double time_s, cp_error *error);
     void *context;
 } cp_checkpoint_options;
 
 /* kept 20, every 1, cpu_s 120, wall_s 1200, request_max 64 KiB. */
 cp_checkpoint_options cp_checkpoint_options_default(void);
 
+#define CP_BRANCH_FAILURE_SIZE 256
+
 /* What a branch came to. */
 typedef struct cp_branch_end {
     bool answered;      /* it ended by itself with success */
     const void *answer; /* owned by the checkpoints until destroy */
     size_t answer_size;
-    char failure[96]; /* "" when answered, else how it ended: "ended by signal 6 (Aborted)" */
+    char failure[CP_BRANCH_FAILURE_SIZE]; /* "" when answered, else how it ended: "ended by signal 6
+                                             (Aborted)", "failed: ..." with its error */
 } cp_branch_end;
 
 CP_MUST_CHECK cp_status cp_checkpoints_create(const cp_checkpoint_options *options,

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/child.h"
 
+#include "core/installation.h"
+#include "core/log.h"
 #include "core/progress.h"
 #include "core/scratch.h"
 #include "run/child_environment.h"
@@ -19,7 +21,6 @@
 #include <unistd.h>
 
 #define TAIL_BYTES 1500 /* of stderr kept as the reason of a failure */
-#define LOG_PREFIX "crashpulse: "
 #define WORKER_NAME "crashpulse-worker"
 
 extern char **environ;
@@ -83,20 +84,27 @@ static int spawn(const char *program, const char *const *arguments, cp_child *ch
 
 cp_status cp_child_find_worker(const char *given, char *path, size_t size, cp_error *error)
 {
-    if (given != NULL) {
+    cp_status status = CP_OK;
+    if (given != NULL)
         snprintf(path, size, "%s", given);
-    } else {
-        ssize_t length = readlink("/proc/self/exe", path, size - 1);
-        if (length < 0)
-            return cp_fail(error, CP_IO_FAILED, "/proc/self/exe: %s", strerror(errno));
-        path[length] = '\0';
-        char *name = strrchr(path, '/') + 1;
-        snprintf(name, size - (size_t)(name - path), "%s", WORKER_NAME);
-    }
-    if (access(path, X_OK) != 0)
-        return cp_fail(error, CP_IO_FAILED, "%s: %s; it belongs beside crashpulse", path,
-                       strerror(errno));
-    return CP_OK;
+    else
+        status = cp_installation_find(CP_INSTALLED_WORKER, WORKER_NAME, path, size, error);
+    if (status == CP_OK && access(path, X_OK) != 0)
+        return cp_fail(error, CP_IO_FAILED,
+                       "%s: %s; the worker comes with crashpulse: install it again, or build all "
+                       "of it",
+                       path, strerror(errno));
+    return status;
+}
+
+// With --verbose: what is started.
+static void tell_start(const char *const *arguments, pid_t pid)
+{
+    char words[2048] = "";
+    for (size_t k = 0, used = 0; arguments[k] != NULL && used < sizeof words; k++)
+        used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", k > 0 ? " " : "",
+                                 arguments[k]);
+    cp_log_detail("process %ld starts: %s", (long)pid, words);
 }
 
 cp_status cp_child_start(const char *program, const char *const *arguments, cp_child *child,
@@ -115,8 +123,10 @@ cp_status cp_child_start(const char *program, const char *const *arguments, cp_c
         failed = spawn(program, arguments, child, ends[1]);
         close(ends[1]);
     }
-    if (failed == 0)
+    if (failed == 0) {
+        tell_start(arguments, child->pid);
         return CP_OK;
+    }
     bool has_file = child->messages != NULL;
     if (has_file)
         fclose(child->messages);
@@ -137,9 +147,9 @@ static void pass_on_log(FILE *messages, cp_said *said)
     char line[8192];
     rewind(messages);
     while (fgets(line, sizeof line, messages) != NULL)
-        if (strncmp(line, LOG_PREFIX, strlen(LOG_PREFIX)) == 0 &&
+        if (strncmp(line, CP_LOG_PREFIX, strlen(CP_LOG_PREFIX)) == 0 &&
             (said == NULL || cp_said_is_new(said, line)))
-            fputs(line, stderr);
+            cp_log_pass_on(line);
 }
 
 static void append(char reason[CP_CHILD_REASON_SIZE], const char *text)
@@ -198,6 +208,8 @@ void cp_child_collect(cp_child *child, int wait_status, cp_child_end *end)
     end->wall_time_s = cp_clock_s() - child->started_s;
     end->reason[0] = '\0';
     pass_on_log(child->messages, child->said);
+    cp_log_detail("process %ld ended after %.2f s, exit code %d", (long)child->pid,
+                  end->wall_time_s, code);
     if (end->exit_code != 0 && end->exit_code != CP_WORKER_EXIT_ELSEWHERE)
         explain(child, wait_status, end->reason);
     fclose(child->messages);

@@ -32,8 +32,8 @@ typedef struct cp_child_end {
                                           last lines of its stderr */
 } cp_child_end;
 
-/* Path of the worker: the one given, else crashpulse-worker beside the running executable. Errors:
- * CP_IO_FAILED when it is not there. */
+/* Path of the worker: the one given, else the crashpulse-worker that belongs to the running
+ * executable (core/installation.h). Errors: CP_IO_FAILED when it is not there. */
 CP_MUST_CHECK cp_status cp_child_find_worker(const char *given, char *path, size_t size,
                                              cp_error *error);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/counterfactual.h"
 
+#include "control/acting.h"
 #include "run/branch_run.h"
 #include "run/checkpoint.h"
 #include "run/pair.h"
@@ -39,7 +40,7 @@ typedef struct pair_record {
 
 struct cp_counterfactual {
     cp_branch_world world;
-    size_t treatment_count;
+    double step_length_s;
     cp_checkpoints *checkpoints;
     double last_checkpoint_s; /* NEVER before the first */
     double next_checkpoint_s;
@@ -51,7 +52,7 @@ struct cp_counterfactual {
     // as it runs (checkpoint.h).
     vehicle_past *past;  /* VEHICLES_MAX of them, by number */
     pair_record *pairs;  /* CRASHES_MAX */
-    cp_branch_end *ends; /* of pair p: null, then treatments, from p * (1 + treatment_count) */
+    cp_branch_end *ends; /* of pair p: null, then treatments, from p * (1 + treatments) */
 };
 
 // ---- beginning and end ---------------------------------------------------------------------
@@ -65,7 +66,7 @@ static void *reserve_space(size_t bytes)
 
 static size_t ends_bytes(const cp_counterfactual *self)
 {
-    return CRASHES_MAX * (1 + self->treatment_count) * sizeof *self->ends;
+    return CRASHES_MAX * (1 + self->world.treatments->count) * sizeof *self->ends;
 }
 
 static void release_space(void *space, size_t bytes)
@@ -76,8 +77,8 @@ static void release_space(void *space, size_t bytes)
 
 static cp_status create_parts(cp_counterfactual *self, cp_error *error)
 {
-    double window_s = 2.0 * self->world.study->counterfactual.time_series_s;
-    self->world.sample_room = 2 * (size_t)(window_s / self->world.study->step_length_s + 4.0);
+    double window_s = 2.0 * self->world.treatments->timing.time_series_s;
+    self->world.sample_room = 2 * (size_t)(window_s / self->step_length_s + 4.0);
     self->past = reserve_space(VEHICLES_MAX * sizeof *self->past);
     self->pairs = reserve_space(CRASHES_MAX * sizeof *self->pairs);
     self->ends = reserve_space(ends_bytes(self));
@@ -86,7 +87,7 @@ static cp_status create_parts(cp_counterfactual *self, cp_error *error)
         self->world.samples == NULL)
         return cp_fail_memory(error, "counterfactual pairs");
     cp_checkpoint_options options = cp_checkpoint_options_default();
-    options.kept = self->world.study->counterfactual.checkpoints;
+    options.kept = self->world.treatments->timing.checkpoints;
     options.every = CHECKPOINTS_FOR_A_COPY;
     options.branch = cp_branch_run;
     options.advance = cp_branch_advance;
@@ -94,15 +95,15 @@ static cp_status create_parts(cp_counterfactual *self, cp_error *error)
     return cp_checkpoints_create(&options, &self->checkpoints, error);
 }
 
-cp_status cp_counterfactual_create(const cp_study *study, uint64_t seed, cp_simulation *simulation,
+cp_status cp_counterfactual_create(const cp_treatments *treatments, cp_simulation *simulation,
                                    cp_counterfactual **counterfactual, cp_error *error)
 {
     *counterfactual = NULL;
     cp_counterfactual *self = calloc(1, sizeof *self);
     if (self == NULL)
         return cp_fail_memory(error, "counterfactual pairs");
-    self->world = (cp_branch_world){.study = study, .seed = seed, .simulation = simulation};
-    self->treatment_count = study->variant_count - 1;
+    self->world = (cp_branch_world){.treatments = treatments, .simulation = simulation};
+    self->step_length_s = cp_traffic_step_length_s(simulation->traffic);
     self->last_checkpoint_s = NEVER;
     self->next_checkpoint_s = NEVER;
     cp_status status = create_parts(self, error);
@@ -148,13 +149,12 @@ static cp_status remember_inserted(cp_counterfactual *self, cp_error *error)
 static double error_onset_s(const cp_counterfactual *self, const cp_found_contact *found, int role)
 {
     const vehicle_past *past = &self->past[found->impact.vehicle[role]];
-    double towards_s = found->error_since_s[role];
-    if (!found->errs_alone[role])
+    double towards_s = found->car[role].error_since_s;
+    if (!found->car[role].errs_alone)
         return towards_s;
-    double onset_s =
-        past->was_at_fault
-            ? past->fault_since_s - self->world.study->counterfactual.checkpoint_interval_s
-            : self->last_checkpoint_s;
+    double onset_s = past->was_at_fault ? past->fault_since_s -
+                                              self->world.treatments->timing.checkpoint_interval_s
+                                        : self->last_checkpoint_s;
     return fmin(towards_s, past->is_known ? fmax(onset_s, past->inserted_s) : onset_s);
 }
 
@@ -168,9 +168,10 @@ static bool is_inserted_late(const cp_counterfactual *self, const cp_found_conta
     return false;
 }
 
-static cp_status take_id(uint32_t vehicle, char id[CP_BRANCH_ID_SIZE], cp_error *error)
+static cp_status take_id(const cp_counterfactual *self, uint32_t vehicle,
+                         char id[CP_BRANCH_ID_SIZE], cp_error *error)
 {
-    const char *text = sumo_bridge_vehicle_id(vehicle);
+    const char *text = cp_traffic_vehicle_id(self->world.simulation->traffic, vehicle);
     if (strlen(text) >= CP_BRANCH_ID_SIZE)
         return cp_fail(error, CP_BAD_INPUT, "vehicle id '%s' is longer than %d characters", text,
                        CP_BRANCH_ID_SIZE - 1);
@@ -195,10 +196,11 @@ static cp_status take_earlier_crashes(const cp_counterfactual *self, size_t inde
             if (request->earlier_count == CP_BRANCH_EARLIER_MAX)
                 return cp_fail(error, CP_RUN_FAILED,
                                "'%s' had more than %d crashes since the checkpoint",
-                               sumo_bridge_vehicle_id(own), CP_BRANCH_EARLIER_MAX);
+                               cp_traffic_vehicle_id(self->world.simulation->traffic, own),
+                               CP_BRANCH_EARLIER_MAX);
             cp_earlier_crash *earlier = &request->earlier[request->earlier_count++];
             earlier->role = role;
-            status = take_id(pair[0] == own ? pair[1] : pair[0], earlier->opponent, error);
+            status = take_id(self, pair[0] == own ? pair[1] : pair[0], earlier->opponent, error);
         }
     return status;
 }
@@ -226,15 +228,19 @@ static cp_status branch(cp_counterfactual *self, size_t index, cp_error *error)
     cp_branch_request request = {.contact_s = contact_s};
     cp_status status = CP_OK;
     for (int role = 0; status == CP_OK && role < 2; role++)
-        status = take_id(found->impact.vehicle[role], request.ids[role], error);
+        status = take_id(self, found->impact.vehicle[role], request.ids[role], error);
     if (status == CP_OK)
         status = take_earlier_crashes(self, index, pair->checkpoint_s, &request, error);
-    size_t branches = 1 + self->treatment_count;
+    size_t branches = 1 + self->world.treatments->count;
     if (status == CP_OK && !cp_checkpoints_branch(self->checkpoints, pair->checkpoint_s, &request,
                                                   cp_branch_request_size(request.earlier_count),
                                                   branches, &self->ends[number * branches]))
         pair->status = CP_NULL_CHECKPOINT_LOST;
-    return status;
+    // A library of the study's that failed in one of them fails the replication, as it does here.
+    const char *told = status == CP_OK ? cp_acting_told() : NULL;
+    return told != NULL ? cp_fail(error, CP_RUN_FAILED, "in a branch from %.2f s: %s",
+                                  pair->checkpoint_s, told)
+                        : status;
 }
 
 // Freeze this checkpoint, if the way from the last copy has become long.
@@ -278,12 +284,11 @@ cp_status cp_counterfactual_step(cp_counterfactual *self, cp_error *error)
             status = branch(self, self->found_seen, error);
 
     // Half a step early rather than late: clocks that add up steps are never exact.
-    if (status != CP_OK ||
-        time_s < self->next_checkpoint_s - 0.5 * self->world.study->step_length_s)
+    if (status != CP_OK || time_s < self->next_checkpoint_s - 0.5 * self->step_length_s)
         return status;
     self->next_checkpoint_s =
         (self->last_checkpoint_s == NEVER ? time_s : self->next_checkpoint_s) +
-        self->world.study->counterfactual.checkpoint_interval_s;
+        self->world.treatments->timing.checkpoint_interval_s;
     note_faults(self, time_s);
     self->last_checkpoint_s = time_s;
     return take_checkpoint(self, time_s, error);
@@ -303,18 +308,18 @@ cp_status cp_counterfactual_conclude(cp_counterfactual *self, const cp_fleet *fl
     for (size_t number = 0; status == CP_OK && number < count; number++) {
         const pair_record *record = &self->pairs[number];
         const cp_impact *impact = &simulation->found[record->found].impact;
-        cp_pair pair = {.study = self->world.study,
+        cp_pair pair = {.treatments = self->world.treatments,
                         .simulation = simulation,
                         .fleet = fleet,
                         .number = number,
                         .found = record->found,
                         .crash = &crashes[number],
-                        .ids = {sumo_bridge_vehicle_id(impact->vehicle[0]),
-                                sumo_bridge_vehicle_id(impact->vehicle[1])},
+                        .ids = {cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[0]),
+                                cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[1])},
                         .status = record->status,
                         .lead_s = record->lead_s,
                         .checkpoint_s = record->checkpoint_s,
-                        .ends = &self->ends[number * (1 + self->treatment_count)]};
+                        .ends = &self->ends[number * (1 + self->world.treatments->count)]};
         status = cp_pair_conclude(&pair, rows, error);
     }
     return status;

@@ -4,6 +4,7 @@
 
 #include "run/fleet.h"
 #include "run/simulation.h"
+#include "run/treatment.h"
 #include "store/counterfactual_rows.h"
 
 /* Counterfactual pairs: while the baseline runs, checkpoints are kept; each crash is gone through
@@ -11,14 +12,14 @@
  * functions on its two vehicles. The checkpoint lies at least CP_COUNTERFACTUAL_LEAD_S before
  * contact, and at least 1 s before the driver error began; the onset is known as the last
  * checkpoint at which the driver was not yet at fault. Branches run until
- * counterfactual.horizon_s of the study after the baseline's contact. */
+ * counterfactual.horizon_s after the baseline's contact. */
 #define CP_COUNTERFACTUAL_LEAD_S 4.0
 #define CP_COUNTERFACTUAL_BEFORE_ERROR_S 1.0
 
 typedef struct cp_counterfactual cp_counterfactual;
 
-/* For a simulation that has begun; study, simulation are borrowed. seed: of the replication. */
-CP_MUST_CHECK cp_status cp_counterfactual_create(const cp_study *study, uint64_t seed,
+/* For a simulation that has begun as one that is treated; both are borrowed. */
+CP_MUST_CHECK cp_status cp_counterfactual_create(const cp_treatments *treatments,
                                                  cp_simulation *simulation,
                                                  cp_counterfactual **counterfactual,
                                                  cp_error *error);

@@ -4,6 +4,7 @@
 #include "core/log.h"
 #include "crash/crash_simulation.h"
 #include "pulse/pulse_codec.h"
+#include "run/fleet_car.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,6 +21,7 @@ static const cp_severity NO_SEVERITY = {
     .mean_g = NAN,
     .t_v0_s = NAN,
     .max_50ms_g = NAN,
+    .max_50ms_y_g = NAN,
     .asi_1 = NAN,
     .pdof_rad = NAN,
     .yaw_change_rad_s = NAN};
@@ -28,28 +30,31 @@ static cp_status choose(const cp_impact *impact, const cp_impact_names *names,
                         const cp_fleet *fleet, int role, cp_stand_in *car, cp_error *error)
 {
     const cp_vehicle_state *state = &impact->state[role];
-    cp_status status = cp_fleet_choose(fleet, names->sumocfg_path, names->sumo_type[role],
-                                       &names->type[role], &car->choice, error);
+    cp_vehicle_model drawn;
+    cp_status status =
+        cp_fleet_car(fleet, names->sumocfg_path, names->sumo_type[role], &names->type[role],
+                     names->sumo_id[role], &car->choice, &drawn, error);
     if (status != CP_OK)
         return status;
-    const cp_vehicle_model *chosen = car->choice.model;
-    if (chosen == NULL) {
+    if (car->choice.model == NULL) {
         car->model = cp_vehicle_model_default();
         car->model.length_m = state->length_m;
         car->model.width_m = state->width_m;
         car->model.cg_to_front_m = 0.42 * state->length_m;
         return CP_OK;
     }
-    car->model = cp_vehicle_model_cover(chosen, state->length_m, state->width_m);
+    cp_drawn_car_text(car->choice.model, &drawn, car->drawn);
+    car->model = cp_vehicle_model_cover(&drawn, state->length_m, state->width_m);
     return CP_OK;
 }
 
 // What is outside of the calibrated range; of a vehicle without a model nothing else is known.
 static unsigned outside_of(const cp_stand_in cars[2], const cp_crash_configuration *configuration,
-                           const cp_crash_description *description, int role)
+                           const cp_crash_description *description, int role,
+                           cp_validity_ground *ground)
 {
     unsigned outside =
-        cp_validity(&cars[0].model, &cars[1].model, configuration, description, role);
+        cp_validity(&cars[0].model, &cars[1].model, configuration, description, role, ground);
     if (cars[role].choice.model == NULL)
         return (outside & CP_OUTSIDE_CONTACT_SIDE) | CP_OUTSIDE_NO_MODEL;
     if (cars[1 - role].choice.model == NULL)
@@ -88,7 +93,9 @@ static cp_status fill_vehicle(const cp_crash_facts *facts, const cp_impact_names
     vehicle->sumo_type = strdup(names->sumo_type[role]);
     vehicle->vehicle_model =
         strdup(choice->model != NULL ? choice->model->name : CP_NO_VEHICLE_MODEL);
-    if (vehicle->sumo_id == NULL || vehicle->sumo_type == NULL || vehicle->vehicle_model == NULL)
+    vehicle->drawn = strdup(cars[role].drawn);
+    if (vehicle->sumo_id == NULL || vehicle->sumo_type == NULL || vehicle->vehicle_model == NULL ||
+        vehicle->drawn == NULL)
         return cp_fail_memory(error, "crash");
     vehicle->chosen_by = choice->chosen_by;
     snprintf(vehicle->no_model_reason, sizeof vehicle->no_model_reason, "%s", choice->reason);
@@ -100,11 +107,15 @@ static cp_status fill_vehicle(const cp_crash_facts *facts, const cp_impact_names
     vehicle->width_m = facts->width_m[role];
     vehicle->velocity_angle_rad = row->description.velocity_angle_rad[role];
     vehicle->side = configuration->side[role];
-    vehicle->outside = outside_of(cars, configuration, &row->description, role);
+    cp_validity_ground ground;
+    vehicle->outside = outside_of(cars, configuration, &row->description, role, &ground);
+    vehicle->evidence_class = ground.evidence_class;
+    vehicle->class_error_1 = ground.error_1;
     if (names->had_crashed[0] || names->had_crashed[1])
         vehicle->outside |= CP_OUTSIDE_DAMAGED;
     vehicle->severity = NO_SEVERITY;
     vehicle->crush_m = vehicle->absorbed_j = vehicle->ees_m_s = vehicle->olc_sd_g = NAN;
+    vehicle->intrusion_m = NAN;
     return fill_place(names->lane[role], vehicle, error);
 }
 
@@ -138,6 +149,8 @@ static cp_status simulate(const cp_stand_in cars[2], const cp_crash_configuratio
         for (int role = 0; role < 2; role++) {
             row->vehicle[role].severity = result.severity[role];
             row->vehicle[role].crush_m = result.crush_m[role];
+            row->vehicle[role].intrusion_m = result.struck[role].depth_m;
+            row->vehicle[role].intrusion_zone = cp_struck_zone_text(result.struck[role].zone);
             row->vehicle[role].absorbed_j = result.whole[role].absorbed_j;
             row->vehicle[role].ees_m_s = result.whole[role].ees_m_s;
         }
@@ -258,6 +271,11 @@ cp_status cp_crash_record_facts(const cp_crash_facts *facts, const cp_impact_nam
     if (status != CP_OK)
         return status;
 
+    // What lies outside for another reason has no class that speaks for it.
+    for (int role = 0; role < 2; role++)
+        if (row->vehicle[role].outside != 0)
+            row->vehicle[role].evidence_class = NULL;
+
     // OLC speaks of frontal contact only.
     for (int role = 0; role < 2; role++)
         if (configuration.side[role] != CP_SIDE_FRONT)
@@ -299,7 +317,7 @@ cp_status cp_crash_record_repeat(const cp_crash_row *known, const cp_impact_name
     // All of the texts and pulses belong to one row only.
     for (int role = 0; role < 2; role++) {
         cp_crash_vehicle_row *vehicle = &row->vehicle[role];
-        vehicle->sumo_id = vehicle->sumo_type = vehicle->vehicle_model = NULL;
+        vehicle->sumo_id = vehicle->sumo_type = vehicle->vehicle_model = vehicle->drawn = NULL;
         vehicle->lane = vehicle->edge = vehicle->junction = NULL;
         vehicle->pulse = NULL;
     }
@@ -310,13 +328,15 @@ cp_status cp_crash_record_repeat(const cp_crash_row *known, const cp_impact_name
         vehicle->sumo_id = strdup(from->sumo_id);
         vehicle->sumo_type = strdup(from->sumo_type);
         vehicle->vehicle_model = strdup(from->vehicle_model);
+        vehicle->drawn = strdup(from->drawn);
         if (from->pulse != NULL) {
             vehicle->pulse = malloc(from->pulse_size);
             if (vehicle->pulse != NULL)
                 memcpy(vehicle->pulse, from->pulse, from->pulse_size);
         }
         if (vehicle->sumo_id == NULL || vehicle->sumo_type == NULL ||
-            vehicle->vehicle_model == NULL || (from->pulse != NULL && vehicle->pulse == NULL))
+            vehicle->vehicle_model == NULL || vehicle->drawn == NULL ||
+            (from->pulse != NULL && vehicle->pulse == NULL))
             return cp_fail_memory(error, "crash");
         cp_status status = fill_place(names->lane[role], vehicle, error);
         if (status != CP_OK)

@@ -2,6 +2,7 @@
 #ifndef RUN_CRASH_RECORD_H
 #define RUN_CRASH_RECORD_H
 
+#include "crash/drawn_car.h"
 #include "impact/impact.h"
 #include "run/fleet.h"
 #include "store/result_rows.h"
@@ -24,6 +25,7 @@ typedef struct cp_impact_names {
 typedef struct cp_stand_in {
     cp_fleet_choice choice;
     cp_vehicle_model model; /* covers the rectangle; without a choice only its outline counts */
+    char drawn[CP_DRAWN_CAR_TEXT_SIZE]; /* what of it is not its class's (crash/drawn_car.h) */
 } cp_stand_in;
 
 /* What there is to know of a crash before it is simulated. */

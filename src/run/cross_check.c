@@ -28,7 +28,7 @@ static cp_status append(cp_cross_check_pair **pairs, size_t *count, cp_cross_che
 }
 
 cp_status cp_cross_check_add_contact(cp_cross_check *check, uint32_t vehicle_1, uint32_t vehicle_2,
-                                     const char *found_as, double time_s, cp_error *error)
+                                     cp_found_as found_as, double time_s, cp_error *error)
 {
     cp_cross_check_pair pair = make_pair(vehicle_1, vehicle_2);
     pair.time_s = time_s;
@@ -68,13 +68,13 @@ static int compare_pairs(const void *left, const void *right)
 }
 
 // Of our contacts of one pair, [from, ...) in the sorted list: the crash, else the nearest in time.
-static const char *best_of(const cp_cross_check *check, size_t from,
+static cp_found_as best_of(const cp_cross_check *check, size_t from,
                            const cp_cross_check_pair *report)
 {
     const cp_cross_check_pair *best = &check->ours[from];
     for (size_t k = from; k < check->our_count && compare_pairs(&check->ours[k], report) == 0;
          k++) {
-        if (strcmp(check->ours[k].found_as, "crash") == 0)
+        if (check->ours[k].found_as == CP_FOUND_CRASH)
             return check->ours[k].found_as;
         if (fabs(check->ours[k].time_s - report->time_s) < fabs(best->time_s - report->time_s))
             best = &check->ours[k];
@@ -104,7 +104,7 @@ void cp_cross_check_match(cp_cross_check *check)
         cp_cross_check_pair *report = &check->sumo[k];
         size_t from = lower_bound(check, report);
         bool is_ours = from < check->our_count && compare_pairs(&check->ours[from], report) == 0;
-        report->found_as = is_ours ? best_of(check, from, report) : "no_contact";
+        report->found_as = is_ours ? best_of(check, from, report) : CP_FOUND_NO_CONTACT;
     }
 }
 

@@ -2,6 +2,7 @@
 #include "run/fleet.h"
 
 #include "core/file.h"
+#include "crash/named_vehicle.h"
 #include "crash/shipped_vehicle.h"
 #include "study/scenario_files.h"
 
@@ -49,10 +50,10 @@ static cp_status load_named(const cp_study *study, const cp_study_vehicle *vehic
         return load_file(vehicle->model_path, model, row, error);
     if (cp_shipped_vehicle_find(vehicle->model_name, &shipped))
         return load_shipped(&shipped, model, row, error);
-    return cp_fail(error, CP_BAD_INPUT,
-                   "%s:%zu: vehicles: no vehicle '%s' is shipped; a name must be one of %s, a file "
-                   "has a '/' or a '.' in it",
-                   study->path, vehicle->line, vehicle->model_name, cp_shipped_vehicle_names());
+    cp_status status = cp_named_vehicle_check(vehicle->model_name, error);
+    return status == CP_OK
+               ? status
+               : cp_error_prefix(error, "%s:%zu: vehicles: ", study->path, vehicle->line);
 }
 
 // Room for one more.
@@ -168,10 +169,22 @@ static cp_status add_none(cp_fleet *fleet, cp_error *error)
     return row->name != NULL && row->yaml != NULL ? CP_OK : cp_fail_memory(error, "vehicles");
 }
 
+cp_status cp_fleet_check_market(const cp_study *study, cp_error *error)
+{
+    for (size_t k = 0; k < study->market_count; k++)
+        if (!cp_vehicle_is_fleet_class(study->market[k].vehicle_class))
+            return cp_fail(error, CP_BAD_INPUT,
+                           "%s:%zu: vehicles.market[%zu].class must be a vehicle class of the "
+                           "fleet, found '%s'; there are %s",
+                           study->path, study->market[k].line, k, study->market[k].vehicle_class,
+                           cp_vehicle_fleet_classes());
+    return CP_OK;
+}
+
 cp_status cp_fleet_load(const cp_study *study, cp_fleet *fleet, cp_error *error)
 {
     *fleet = (cp_fleet){.study = study};
-    cp_status status = CP_OK;
+    cp_status status = cp_fleet_check_market(study, error);
     for (size_t k = 0; status == CP_OK && k < study->vehicle_count; k++) {
         const cp_study_vehicle *vehicle = &study->vehicles[k];
         status = make_room(fleet, error);
@@ -203,6 +216,12 @@ void cp_fleet_destroy(cp_fleet *fleet)
 }
 
 // ---- choosing ------------------------------------------------------------------------------
+
+const cp_vehicle_model *cp_fleet_find(const cp_fleet *fleet, const char *name)
+{
+    size_t k = find_name(fleet, name);
+    return k < fleet->count ? &fleet->models[k] : NULL;
+}
 
 static cp_status choose_named(const cp_fleet *fleet, const char *sumocfg_path,
                               const char *sumo_type, const char *name, cp_fleet_choice *choice,

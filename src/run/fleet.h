@@ -2,10 +2,11 @@
 #ifndef RUN_FLEET_H
 #define RUN_FLEET_H
 
+#include "core/rng.h"
 #include "crash/vehicle_choice.h"
 #include "crash/vehicle_model.h"
 #include "study/plan.h"
-#include "traffic/sumo_bridge.h"
+#include "traffic/vehicle_state.h"
 
 /* The surrogate models of a study: which car a SUMO vehicle type crashes as. First of these that
  * applies:
@@ -26,6 +27,7 @@ typedef struct cp_fleet {
     cp_vehicle_model_row *rows; /* the same for the database */
     char **paths;               /* resolved, of those that SUMO types name by path; else NULL */
     size_t count;
+    cp_rng_key cars; /* what the cars of a replication are drawn by (run/fleet_car.h) */
 } cp_fleet;
 
 /* Load all vehicle files of the study and of its scenarios' vehicle types. Errors: CP_BAD_INPUT
@@ -39,6 +41,12 @@ typedef struct cp_fleet_choice {
     const char *chosen_by;              /* static text; "" without a model */
     char reason[CP_CHOICE_REASON_SIZE]; /* why there is none */
 } cp_fleet_choice;
+
+/* Errors: CP_BAD_INPUT with file and line when the study's market names no class of a fleet. */
+CP_MUST_CHECK cp_status cp_fleet_check_market(const cp_study *study, cp_error *error);
+
+/* The model of that name; NULL when the fleet has none. */
+const cp_vehicle_model *cp_fleet_find(const cp_fleet *fleet, const char *name);
 
 /* sumocfg_path: of the scenario, from which paths are seen. Errors: CP_BAD_INPUT for a type that
  * names a model the fleet does not have. */

@@ -9,32 +9,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+static bool is_text(const char *one, const char *other)
+{
+    return strcmp(one, other) == 0;
+}
+
 // The answer with its roles as in the baseline's crash: its a stays a, its b stays b.
 static void keep_roles(cp_branch_answer *answer, const char *const ids[2])
 {
-    bool swapped = strcmp(answer->ids[1], ids[0]) == 0 || strcmp(answer->ids[0], ids[1]) == 0;
-    if (!swapped)
-        return;
-#define SWAP(type, pair)                                                                           \
-    do {                                                                                           \
-        type first = (pair)[0];                                                                    \
-        (pair)[0] = (pair)[1];                                                                     \
-        (pair)[1] = first;                                                                         \
-    } while (0)
-    cp_impact *impact = &answer->found.impact;
-    SWAP(uint32_t, impact->vehicle);
-    SWAP(cp_vehicle_state, impact->state);
-    SWAP(double, impact->yaw_rate_rad_s);
-    SWAP(cp_vec2, impact->front_velocity_m_s);
-    SWAP(cp_contact_side, impact->side);
-    SWAP(bool, answer->found.at_fault);
-    SWAP(bool, answer->found.had_crashed);
-    SWAP(const char *, answer->ids);
-    SWAP(const char *, answer->types);
-    SWAP(const char *, answer->lanes);
-    answer->is_swapped = !answer->is_swapped;
-    SWAP(cp_sumo_type, answer->type);
-#undef SWAP
+    if (is_text(answer->car[1].id, ids[0]) || is_text(answer->car[0].id, ids[1]))
+        cp_branch_answer_swap_roles(answer);
 }
 
 // Name of the first thing in which two vehicle states differ; NULL when they are the same bits.
@@ -82,9 +66,9 @@ static bool is_the_baselines(const cp_pair *pair, const cp_branch_answer *answer
     const cp_found_contact *baseline = &pair->simulation->found[pair->found];
     bool is_same = impact_difference(&baseline->impact, &answer->found.impact) == NULL;
     for (int role = 0; is_same && role < 2; role++)
-        is_same = strcmp(answer->ids[role], pair->ids[role]) == 0 &&
-                  strcmp(answer->types[role], pair->crash->vehicle[role].sumo_type) == 0 &&
-                  answer->found.had_crashed[role] == baseline->had_crashed[role];
+        is_same = is_text(answer->car[role].id, pair->ids[role]) &&
+                  is_text(answer->car[role].type_id, pair->crash->vehicle[role].sumo_type) &&
+                  answer->found.car[role].had_crashed == baseline->car[role].had_crashed;
     return is_same;
 }
 
@@ -95,12 +79,13 @@ static cp_status fill_crash(const cp_pair *pair, const cp_branch_answer *answer,
 {
     cp_impact_names names = {.sumocfg_path = pair->simulation->sumocfg_path};
     for (int role = 0; role < 2; role++) {
-        names.sumo_id[role] = answer->ids[role];
-        names.sumo_type[role] = answer->types[role];
-        names.type[role] = answer->type[role];
-        names.at_fault[role] = answer->found.at_fault[role];
-        names.had_crashed[role] = answer->found.had_crashed[role];
-        names.lane[role] = answer->lanes[role];
+        const cp_branch_car *car = &answer->car[role];
+        names.sumo_id[role] = car->id;
+        names.sumo_type[role] = car->type_id;
+        names.type[role] = car->type;
+        names.lane[role] = car->lane;
+        names.at_fault[role] = answer->found.car[role].at_fault;
+        names.had_crashed[role] = answer->found.car[role].had_crashed;
     }
     cp_status status = known != NULL ? cp_crash_record_repeat(known, &names, row, error)
                                      : cp_crash_record_fill(&answer->found.impact, &names,
@@ -133,9 +118,9 @@ static cp_status compare_null(const cp_pair *pair, const cp_branch_answer *answe
         snprintf(row->detail, CP_DETAIL_SIZE, "no crash");
         return CP_OK;
     }
-    if (strcmp(answer->ids[0], pair->ids[0]) != 0 || strcmp(answer->ids[1], pair->ids[1]) != 0) {
-        snprintf(row->detail, CP_DETAIL_SIZE, "crash of %.80s and %.80s", answer->ids[0],
-                 answer->ids[1]);
+    if (!is_text(answer->car[0].id, pair->ids[0]) || !is_text(answer->car[1].id, pair->ids[1])) {
+        snprintf(row->detail, CP_DETAIL_SIZE, "crash of %.80s and %.80s", answer->car[0].id,
+                 answer->car[1].id);
         return CP_OK;
     }
     const char *what = impact_difference(&baseline->impact, &answer->found.impact);
@@ -167,12 +152,11 @@ static cp_status conclude_null(const cp_pair *pair, cp_counterfactual_rows *rows
                                    .status = pair->status,
                                    .lead_s = pair->lead_s,
                                    .checkpoint_s = pair->checkpoint_s,
-                                   .variant =
-                                       pair->study->variants[cp_study_baseline(pair->study)].name};
+                                   .variant = pair->treatments->baseline};
     const cp_branch_end *end = &pair->ends[0];
     if (row->status == CP_NULL_REPRODUCED && !end->answered) {
         row->status = CP_NULL_BRANCH_FAILED;
-        snprintf(row->detail, CP_DETAIL_SIZE, "null treatment: %s", end->failure);
+        snprintf(row->detail, CP_DETAIL_SIZE, "null treatment: %.200s", end->failure);
     } else if (row->status == CP_NULL_REPRODUCED) {
         if (!cp_branch_answer_read(end->answer, end->answer_size, &answer))
             return cp_fail(error, CP_RUN_FAILED, "a branch's answer is damaged");
@@ -197,8 +181,8 @@ static size_t count_new(const cp_pair *pair, const cp_branch_answer *answer)
         bool is_new = other.time_s <= end_s;
         for (size_t f = 0; is_new && f < simulation->found_count; f++) {
             const cp_impact *impact = &simulation->found[f].impact;
-            const char *ids[2] = {sumo_bridge_vehicle_id(impact->vehicle[0]),
-                                  sumo_bridge_vehicle_id(impact->vehicle[1])};
+            const char *ids[2] = {cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[0]),
+                                  cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[1])};
             is_new = !(cp_found_is_crash(&simulation->found[f]) &&
                        cp_branch_is_same_pair(ids, other.ids));
         }
@@ -231,12 +215,12 @@ static bool happens_again(const cp_branch_answer *answer, const char *const ids[
 static size_t count_vanished(const cp_pair *pair, const cp_branch_answer *answer)
 {
     const cp_simulation *simulation = pair->simulation;
-    double horizon_s = pair->crash->time_s + pair->study->counterfactual.horizon_s;
+    double horizon_s = pair->crash->time_s + pair->treatments->timing.horizon_s;
     size_t count = 0;
     for (size_t f = 0; f < simulation->found_count; f++) {
         const cp_impact *impact = &simulation->found[f].impact;
-        const char *ids[2] = {sumo_bridge_vehicle_id(impact->vehicle[0]),
-                              sumo_bridge_vehicle_id(impact->vehicle[1])};
+        const char *ids[2] = {cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[0]),
+                              cp_traffic_vehicle_id(simulation->traffic, impact->vehicle[1])};
         count += cp_found_is_crash(&simulation->found[f]) && impact->time_s > pair->checkpoint_s &&
                  impact->time_s <= horizon_s && !involves(pair->ids, ids) &&
                  !happens_again(answer, ids);
@@ -266,7 +250,8 @@ static cp_status judge(const cp_pair *pair, cp_branch_answer *answer, cp_counter
     cp_status status = fill_crash(pair, answer, CP_RECORD_ALL, known, &row->treated, error);
     row->has_crash = status == CP_OK;
     row->outcome = row->outcome_olc = CP_OUTCOME_CHANGED_OPPONENT;
-    if (status != CP_OK || !cp_branch_is_same_pair(answer->ids, pair->ids))
+    const char *const treated_ids[2] = {answer->car[0].id, answer->car[1].id};
+    if (status != CP_OK || !cp_branch_is_same_pair(treated_ids, pair->ids))
         return status;
     row->outcome = compare(pair->crash->description.closing_speed_m_s,
                            row->treated.description.closing_speed_m_s, CP_COUNTERFACTUAL_SPEED_M_S);
@@ -287,7 +272,7 @@ static cp_status conclude_treatment(const cp_pair *pair, size_t k, cp_null_statu
     if (row == NULL)
         return cp_fail_memory(error, "counterfactual");
     *row = (cp_counterfactual_row){.crash = pair->number,
-                                   .variant = cp_branch_treatment(pair->study, k)->name,
+                                   .variant = pair->treatments->treatment[k].name,
                                    .outcome = CP_OUTCOME_INVALID,
                                    .outcome_olc = CP_OUTCOME_INVALID,
                                    .reason = null_status};
@@ -313,7 +298,7 @@ cp_status cp_pair_conclude(const cp_pair *pair, cp_counterfactual_rows *rows, cp
     cp_null_status null_status = CP_NULL_REPRODUCED;
     const char *null_detail = "";
     cp_status status = conclude_null(pair, rows, &null_status, &null_detail, error);
-    for (size_t k = 0; status == CP_OK && k < pair->study->variant_count - 1; k++)
+    for (size_t k = 0; status == CP_OK && k < pair->treatments->count; k++)
         status = conclude_treatment(pair, k, null_status, null_detail, rows, error);
     return status;
 }

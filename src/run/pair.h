@@ -5,6 +5,7 @@
 #include "run/checkpoint.h"
 #include "run/fleet.h"
 #include "run/simulation.h"
+#include "run/treatment.h"
 #include "store/counterfactual_rows.h"
 
 /* A crash of the baseline and what its branches came to: whether the null treatment repeats it to
@@ -15,7 +16,7 @@
 
 /* All borrowed. */
 typedef struct cp_pair {
-    const cp_study *study;
+    const cp_treatments *treatments;
     const cp_simulation *simulation; /* of the baseline */
     const cp_fleet *fleet;
     size_t number;             /* of the crash among those that count */

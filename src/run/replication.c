@@ -2,6 +2,7 @@
 #include "run/replication.h"
 
 #include "core/log.h"
+#include "run/contact_rows.h"
 #include "run/counterfactual.h"
 #include "run/crash_record.h"
 #include "run/probe_outputs.h"
@@ -26,6 +27,8 @@ typedef struct replication_run {
     const cp_fleet *fleet;
     const cp_study_scenario *scenario;
     cp_simulation simulation;
+    cp_treatment *treatment; /* of the counterfactual design; owned */
+    cp_treatments treatments;
     cp_counterfactual *counterfactual; /* NULL in other designs */
     named_crash *named;                /* in the order they were found */
     size_t named_count;
@@ -86,17 +89,21 @@ static cp_status name_crash(const replication_run *run, const cp_found_contact *
     const cp_impact *impact = &found->impact;
     *named = (named_crash){.found = found, .names.sumocfg_path = run->simulation.sumocfg_path};
     for (int role = 0; role < 2; role++) {
-        named->names.at_fault[role] = found->at_fault[role];
-        named->names.had_crashed[role] = found->had_crashed[role];
-        named->id[role] = strdup(sumo_bridge_vehicle_id(impact->vehicle[role]));
-        named->type[role] = strdup(sumo_bridge_type_id(impact->state[role].type));
-        named->lane[role] = strdup(sumo_bridge_lane_id(impact->state[role].lane));
+        named->names.at_fault[role] = found->car[role].at_fault;
+        named->names.had_crashed[role] = found->car[role].had_crashed;
+        named->id[role] =
+            strdup(cp_traffic_vehicle_id(run->simulation.traffic, impact->vehicle[role]));
+        named->type[role] =
+            strdup(cp_traffic_type_id(run->simulation.traffic, impact->state[role].type));
+        named->lane[role] =
+            strdup(cp_traffic_lane_id(run->simulation.traffic, impact->state[role].lane));
         if (named->id[role] == NULL || named->type[role] == NULL || named->lane[role] == NULL)
             return cp_fail_memory(error, "crash");
         named->names.lane[role] = named->lane[role];
         named->names.sumo_id[role] = named->id[role];
         named->names.sumo_type[role] = named->type[role];
-        cp_status status = sumo_bridge_type(named->type[role], &named->names.type[role], error);
+        cp_status status = cp_traffic_type(run->simulation.traffic, named->type[role],
+                                           &named->names.type[role], error);
         if (status != CP_OK)
             return status;
     }
@@ -161,19 +168,11 @@ static cp_status record_crashes(replication_run *run, cp_error *error)
 static cp_status record_contact(replication_run *run, const cp_found_contact *found,
                                 cp_error *error)
 {
-    const cp_impact *impact = &found->impact;
-    cp_contact_row *row = cp_result_rows_add_contact(run->results);
-    if (row == NULL)
-        return cp_fail_memory(error, "contact");
-    row->time_s = impact->time_s;
-    row->contact_m = impact->contact_m;
-    row->verdict = found->found_as;
-    for (int role = 0; role < 2; role++) {
-        row->vehicle[role] = strdup(sumo_bridge_vehicle_id(impact->vehicle[role]));
-        if (row->vehicle[role] == NULL)
-            return cp_fail_memory(error, "contact");
-    }
-    return CP_OK;
+    const cp_traffic *traffic = run->simulation.traffic;
+    const char *const ids[2] = {cp_traffic_vehicle_id(traffic, found->impact.vehicle[0]),
+                                cp_traffic_vehicle_id(traffic, found->impact.vehicle[1])};
+    return cp_contact_rows_add(run->results, &found->impact, cp_found_as_text(found->found_as), ids,
+                               error);
 }
 
 static cp_status record_contacts(replication_run *run, cp_error *error)
@@ -203,25 +202,26 @@ static cp_status record_cross_check(replication_run *run, const cp_replication_r
                                     cp_error *error)
 {
     cp_cross_check *check = &run->simulation.check;
+    const cp_traffic *traffic = run->simulation.traffic;
     size_t unexplained = 0, first = 0;
+    cp_status status = CP_OK;
     cp_cross_check_match(check);
-    for (size_t k = 0; k < check->sumo_count; k++) {
-        cp_cross_check_pair *pair = &check->sumo[k];
-        cp_sumo_collision_row *row = cp_result_rows_add_sumo_collision(run->results);
-        if (row == NULL)
-            return cp_fail_memory(error, "collision of SUMO");
-        row->time_s = pair->time_s;
-        row->collider = strdup(sumo_bridge_vehicle_id(pair->collider));
-        row->victim = strdup(sumo_bridge_vehicle_id(pair->victim));
-        row->type = strdup(pair->type);
-        row->found_as = pair->found_as;
-        row->gap_m = isfinite(pair->gap_m) ? pair->gap_m : NAN;
-        if (row->collider == NULL || row->victim == NULL || row->type == NULL)
-            return cp_fail_memory(error, "collision of SUMO");
+    for (size_t k = 0; status == CP_OK && k < check->sumo_count; k++) {
+        const cp_cross_check_pair *pair = &check->sumo[k];
+        const cp_reported_collision report = {
+            .time_s = pair->time_s,
+            .collider = cp_traffic_vehicle_id(traffic, pair->collider),
+            .victim = cp_traffic_vehicle_id(traffic, pair->victim),
+            .type = pair->type,
+            .found_as = cp_found_as_text(pair->found_as),
+            .gap_m = pair->gap_m};
+        status = cp_contact_rows_add_report(run->results, &report, error);
         bool is_apart = isfinite(pair->gap_m) && pair->gap_m > 0.0;
-        if (strcmp(pair->found_as, "no_contact") == 0 && !is_apart && unexplained++ == 0)
+        if (pair->found_as == CP_FOUND_NO_CONTACT && !is_apart && unexplained++ == 0)
             first = run->results->sumo_collision_count - 1;
     }
+    if (status != CP_OK)
+        return status;
     // All are stored with what they were found as; what nothing explains is said.
     if (unexplained > 0) {
         const cp_sumo_collision_row *row = &run->results->sumo_collision[first];
@@ -236,11 +236,60 @@ static cp_status record_cross_check(replication_run *run, const cp_replication_r
 
 static cp_status record_versions(replication_run *run, cp_error *error)
 {
-    run->results->sumo_version = strdup(sumo_bridge_version());
-    run->results->sumo_command_line = strdup(sumo_bridge_command_line());
+    run->results->sumo_version = strdup(cp_traffic_version(run->simulation.traffic));
+    run->results->sumo_command_line = strdup(cp_traffic_command_line(run->simulation.traffic));
     if (run->results->sumo_version == NULL || run->results->sumo_command_line == NULL)
         return cp_fail_memory(error, "SUMO's command line");
     return cp_controls_counters_json(run->simulation.controls, &run->results->counters, error);
+}
+
+// ---- what a study asks for -----------------------------------------------------------------
+
+// variant: NULL: a probe's, without functions.
+static cp_simulation_settings settings_of(const cp_study *study, const cp_study_scenario *scenario,
+                                          const cp_study_variant *variant, uint64_t seed)
+{
+    return (cp_simulation_settings){.sumo = {.sumocfg_path = scenario->sumocfg_path,
+                                             .options = scenario->sumo_options,
+                                             .option_count = scenario->sumo_option_count,
+                                             .scenario = scenario->name,
+                                             .variant = variant != NULL ? variant->name : NULL},
+                                    .drivers = scenario->driver_errors,
+                                    .driver_count = scenario->driver_error_count,
+                                    .functions = variant != NULL ? variant->functions : NULL,
+                                    .function_count = variant != NULL ? variant->function_count : 0,
+                                    .is_treated = study->design == CP_DESIGN_COUNTERFACTUAL,
+                                    .study_seed = study->seed,
+                                    .seed = seed,
+                                    .step_length_s = study->step_length_s,
+                                    .warmup_s = study->warmup_s,
+                                    .stay_s = study->stay_s,
+                                    .history_s = study->history_s};
+}
+
+// Every variant but the baseline is a treatment, in the order of the study.
+static cp_status begin_counterfactual(replication_run *run, uint64_t seed, cp_error *error)
+{
+    const cp_study *study = run->study;
+    size_t baseline = cp_study_baseline(study);
+    if (study->design != CP_DESIGN_COUNTERFACTUAL)
+        return CP_OK;
+    run->treatment = calloc(study->variant_count, sizeof *run->treatment);
+    if (run->treatment == NULL)
+        return cp_fail_memory(error, "treatments");
+    run->treatments = (cp_treatments){.baseline = study->variants[baseline].name,
+                                      .treatment = run->treatment,
+                                      .timing = study->counterfactual,
+                                      .study_seed = study->seed,
+                                      .seed = seed};
+    for (size_t k = 0; k < study->variant_count; k++) {
+        const cp_study_variant *variant = &study->variants[k];
+        if (k != baseline)
+            run->treatment[run->treatments.count++] =
+                (cp_treatment){variant->name, variant->functions, variant->function_count};
+    }
+    return cp_counterfactual_create(&run->treatments, &run->simulation, &run->counterfactual,
+                                    error);
 }
 
 // ---- public --------------------------------------------------------------------------------
@@ -252,11 +301,11 @@ cp_status cp_replication_run(const cp_study *study, const cp_fleet *fleet,
     const cp_study_scenario *scenario = &study->scenarios[replication->scenario];
     replication_run run = {
         .study = study, .fleet = fleet, .scenario = scenario, .results = results};
-    cp_status status = cp_simulation_begin(study, scenario, &study->variants[replication->variant],
-                                           replication->seed, &run.simulation, error);
-    if (status == CP_OK && study->design == CP_DESIGN_COUNTERFACTUAL)
-        status = cp_counterfactual_create(study, replication->seed, &run.simulation,
-                                          &run.counterfactual, error);
+    cp_simulation_settings settings =
+        settings_of(study, scenario, &study->variants[replication->variant], replication->seed);
+    cp_status status = cp_simulation_begin(&settings, &run.simulation, error);
+    if (status == CP_OK)
+        status = begin_counterfactual(&run, replication->seed, error);
     if (status == CP_OK)
         status = run_steps(&run, error);
 
@@ -280,7 +329,27 @@ cp_status cp_replication_run(const cp_study *study, const cp_fleet *fleet,
         status = record_counterfactual(&run, error);
     forget_names(&run);
     cp_counterfactual_destroy(run.counterfactual);
+    free(run.treatment);
     cp_simulation_end(&run.simulation);
+    return status;
+}
+
+// Parameters may be good one by one and contradict each other: the function itself knows. Libraries
+// are not loaded here: what is wrong with them fails their own replications.
+static cp_status try_functions(const cp_study *study, const cp_study_variant *variant,
+                               const cp_traffic *traffic, cp_error *error)
+{
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < variant->function_count; k++) {
+        cp_controls *controls = NULL;
+        if (variant->functions[k].library != NULL)
+            continue;
+        status = cp_controls_create(&variant->functions[k], 1, study->seed, 1, traffic, &controls,
+                                    error);
+        cp_controls_destroy(controls);
+    }
+    if (status != CP_OK)
+        cp_error_prefix(error, "variant %s: ", variant->name);
     return status;
 }
 
@@ -288,21 +357,13 @@ cp_status cp_replication_probe(const cp_study *study, const cp_study_scenario *s
                                cp_error *error)
 {
     cp_simulation simulation;
-    const cp_study_variant nothing = {0};
-    cp_status status = cp_simulation_begin(study, scenario, &nothing, 1, &simulation, error);
+    cp_simulation_settings settings = settings_of(study, scenario, NULL, 1);
+    cp_status status = cp_simulation_begin(&settings, &simulation, error);
     if (status == CP_OK)
         status = cp_traffic_step(simulation.traffic, error);
 
-    // Parameters may be good one by one and contradict each other: the controls themselves know.
-    for (size_t k = 0; status == CP_OK && k < study->variant_count; k++) {
-        const cp_study_variant *variant = &study->variants[k];
-        cp_controls *controls = NULL;
-        status = cp_controls_create(variant->functions, variant->function_count, study->seed, 1,
-                                    simulation.traffic, &controls, error);
-        cp_controls_destroy(controls);
-        if (status != CP_OK)
-            cp_error_prefix(error, "variant %s: ", variant->name);
-    }
+    for (size_t k = 0; status == CP_OK && k < study->variant_count; k++)
+        status = try_functions(study, &study->variants[k], simulation.traffic, error);
     cp_probe_outputs_delete(scenario->name);
     cp_simulation_end(&simulation);
 

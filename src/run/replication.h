@@ -4,6 +4,7 @@
 
 #include "run/fleet.h"
 #include "store/result_rows.h"
+#include "study/study_file.h"
 
 /* One replication from the first step to the last: traffic, drivers and functions, contacts,
  * crashes. In the worker process only. */

@@ -13,12 +13,13 @@ typedef struct cp_runner_options {
     const char *study_path;
     const char *db_path;
     size_t jobs;             /* worker processes at a time, >= 1 */
-    const char *worker_path; /* NULL: crashpulse-worker beside the running executable */
+    const char *worker_path; /* NULL: that of the running executable */
     double time_limit_s; /* a replication that takes longer has failed; 0: ten times the simulated
                             duration, at least 600 s */
     size_t shard;        /* 1 ... shards: which share of the replications to run; */
     size_t shards;       /* 0: all of them */
     bool free_outputs;   /* SUMO may write and connect where the scenarios say */
+    bool allow_plugins;  /* load the libraries that the study names; else it is refused */
     bool unchecked;      /* do not read the whole database for damage first */
     bool progress;       /* show progress on stderr */
 } cp_runner_options;

@@ -3,80 +3,73 @@
 
 #include "impact/footprint.h"
 #include "run/participants.h"
-#include "run/sumo_words.h"
 
+#include <math.h>
 #include <stdlib.h>
-
-const char CP_FOUND_CRASH[] = "crash";
-const char CP_FOUND_AFTER_CRASH[] = "after_crash";
-const char CP_FOUND_WARMUP[] = "warmup";
 
 bool cp_found_is_crash(const cp_found_contact *found)
 {
-    return found->found_as == CP_FOUND_CRASH || found->found_as == CP_FOUND_WARMUP;
+    return cp_found_as_is_crash(found->found_as);
 }
 
 // ---- beginning and end ---------------------------------------------------------------------
 
-static cp_status create_controls(const cp_study *study, const cp_study_scenario *scenario,
-                                 const cp_study_variant *variant, uint64_t seed,
-                                 const cp_traffic *traffic, cp_controls **controls, cp_error *error)
+// Driver errors first, then the functions that are to make up for them.
+static cp_status create_controls(const cp_simulation_settings *settings, cp_simulation *simulation,
+                                 cp_error *error)
 {
-    // Driver errors first, then the functions that are to make up for them.
-    size_t count = scenario->driver_error_count + variant->function_count;
-    cp_control_settings *settings = calloc(count + 1, sizeof *settings);
-    if (settings == NULL)
+    size_t count = settings->driver_count + settings->function_count;
+    cp_control_settings *all = calloc(count + 1, sizeof *all);
+    if (all == NULL)
         return cp_fail_memory(error, "controls");
     for (size_t k = 0; k < count; k++)
-        settings[k] = k < scenario->driver_error_count
-                          ? scenario->driver_errors[k]
-                          : variant->functions[k - scenario->driver_error_count];
-    cp_status status =
-        cp_controls_create(settings, count, study->seed, seed, traffic, controls, error);
-    free(settings);
+        all[k] = k < settings->driver_count ? settings->drivers[k]
+                                            : settings->functions[k - settings->driver_count];
+    cp_status status = cp_controls_create(all, count, settings->study_seed, settings->seed,
+                                          simulation->traffic, &simulation->controls, error);
+    free(all);
     return status;
 }
 
-// Drivers and functions ask where on the road cars are; so do the treatments of branches.
-static bool needs_places(const cp_study *study, const cp_study_scenario *scenario,
-                         const cp_study_variant *variant)
+cp_status cp_simulation_begin_on(const cp_simulation_settings *settings, cp_traffic *traffic,
+                                 cp_simulation *simulation, cp_error *error)
 {
-    bool is_treated = study->design == CP_DESIGN_COUNTERFACTUAL;
-    return scenario->driver_error_count > 0 || variant->function_count > 0 || is_treated;
-}
-
-cp_status cp_simulation_begin(const cp_study *study, const cp_study_scenario *scenario,
-                              const cp_study_variant *variant, uint64_t seed,
-                              cp_simulation *simulation, cp_error *error)
-{
-    cp_sumo_words words;
-    *simulation = (cp_simulation){.sumocfg_path = scenario->sumocfg_path};
-    cp_status status = cp_sumo_words_create(scenario, variant, seed, study->stay_s, &words, error);
-    if (status != CP_OK)
-        return status;
-    cp_traffic_options options = {.sumocfg = scenario->sumocfg_path,
-                                  .seed = seed,
-                                  .step_length_s = study->step_length_s,
-                                  .options = (const char *const *)words.word,
-                                  .option_count = words.count};
-    status = cp_traffic_create(&options, &simulation->traffic, error);
-    cp_sumo_words_destroy(&words);
-    if (status == CP_OK)
-        cp_traffic_read_places(simulation->traffic, needs_places(study, scenario, variant));
-    if (status == CP_OK)
-        status = create_controls(study, scenario, variant, seed, simulation->traffic,
-                                 &simulation->controls, error);
+    *simulation = (cp_simulation){.sumocfg_path = settings->sumo.sumocfg_path, .traffic = traffic};
+    // Drivers and functions ask where on the road cars are; so do the treatments of branches.
+    cp_traffic_read_places(traffic, settings->driver_count > 0 || settings->function_count > 0 ||
+                                        settings->is_treated);
+    cp_status status = create_controls(settings, simulation, error);
     if (status == CP_OK)
         status = cp_detector_create(&simulation->detector, error);
-    if (status == CP_OK && study->history_s > 0.0)
-        status =
-            cp_history_create(study->history_s, study->step_length_s, &simulation->history, error);
+    if (status == CP_OK && settings->history_s > 0.0)
+        status = cp_history_create(settings->history_s, settings->step_length_s,
+                                   &simulation->history, error);
     if (status != CP_OK)
         return status;
-    simulation->counted_from_s = cp_traffic_time_s(simulation->traffic) + study->warmup_s;
-    simulation->warmup_steps = llround(study->warmup_s / study->step_length_s);
-    simulation->stay_s = study->stay_s;
+    simulation->counted_from_s = cp_traffic_time_s(traffic) + settings->warmup_s;
+    simulation->warmup_steps = llround(settings->warmup_s / settings->step_length_s);
+    simulation->stay_s = settings->stay_s;
     return CP_OK;
+}
+
+cp_status cp_simulation_begin(const cp_simulation_settings *settings, cp_simulation *simulation,
+                              cp_error *error)
+{
+    cp_sumo_words words;
+    cp_traffic *traffic = NULL;
+    *simulation = (cp_simulation){0};
+    cp_status status =
+        cp_sumo_words_create(&settings->sumo, settings->seed, settings->stay_s, &words, error);
+    if (status != CP_OK)
+        return status;
+    cp_traffic_options options = {.sumocfg = settings->sumo.sumocfg_path,
+                                  .seed = settings->seed,
+                                  .step_length_s = settings->step_length_s,
+                                  .options = (const char *const *)words.word,
+                                  .option_count = words.count};
+    status = cp_traffic_create(&options, &traffic, error);
+    cp_sumo_words_destroy(&words);
+    return status == CP_OK ? cp_simulation_begin_on(settings, traffic, simulation, error) : status;
 }
 
 void cp_simulation_end_traffic(cp_simulation *simulation)
@@ -149,7 +142,7 @@ static size_t first_crash_of(const cp_simulation *simulation, uint32_t vehicle)
 }
 
 static cp_status remember_found(cp_simulation *simulation, const cp_impact *impact,
-                                const char *found_as, cp_error *error)
+                                cp_found_as found_as, cp_error *error)
 {
     if (simulation->found_count == simulation->found_room) {
         size_t room = simulation->found_room == 0 ? 64 : 2 * simulation->found_room;
@@ -163,16 +156,13 @@ static cp_status remember_found(cp_simulation *simulation, const cp_impact *impa
     *found =
         (cp_found_contact){.impact = *impact, .found_as = found_as, .follows = CP_FOLLOWS_NONE};
     for (int role = 0; role < 2; role++) {
-        found->at_fault[role] = is_at_fault(simulation, impact->vehicle[role]);
-        found->errs_alone[role] =
-            found->at_fault[role] &&
-            cp_controls_errs_alone(simulation->controls, impact->vehicle[role]);
-        found->error_since_s[role] = cp_controls_error_since_s(
-            simulation->controls, impact->vehicle[role], impact->vehicle[1 - role]);
-        found->had_crashed[role] = cp_traffic_is_held(simulation->traffic, impact->vehicle[role]);
-        size_t earlier = found->had_crashed[role]
-                             ? first_crash_of(simulation, impact->vehicle[role])
-                             : CP_FOLLOWS_NONE;
+        cp_found_car *car = &found->car[role];
+        uint32_t own = impact->vehicle[role], other = impact->vehicle[1 - role];
+        car->at_fault = is_at_fault(simulation, own);
+        car->errs_alone = car->at_fault && cp_controls_errs_alone(simulation->controls, own);
+        car->error_since_s = cp_controls_error_since_s(simulation->controls, own, other);
+        car->had_crashed = cp_traffic_is_held(simulation->traffic, own);
+        size_t earlier = car->had_crashed ? first_crash_of(simulation, own) : CP_FOLLOWS_NONE;
         if (earlier < found->follows)
             found->follows = earlier;
     }
@@ -202,9 +192,9 @@ static cp_status remember_history(cp_simulation *simulation, cp_error *error)
 // traffic is still warming up.
 static cp_status take_impact(cp_simulation *simulation, const cp_impact *impact, cp_error *error)
 {
-    const char *found_as = CP_FOUND_CRASH;
+    cp_found_as found_as = CP_FOUND_CRASH;
     if (impact->verdict != CP_CONTACT_CONFIRMED)
-        found_as = cp_contact_verdict_text(impact->verdict);
+        found_as = cp_found_as_verdict(impact->verdict);
     else if (has_crashed(simulation, impact->vehicle[0]) ||
              has_crashed(simulation, impact->vehicle[1]))
         found_as = CP_FOUND_AFTER_CRASH;
@@ -216,8 +206,10 @@ static cp_status take_impact(cp_simulation *simulation, const cp_impact *impact,
         return status;
     cp_found_contact *found = &simulation->found[simulation->found_count - 1];
     if (cp_found_is_crash(found))
-        status = cp_participants_of(simulation->controls, impact, found->had_crashed,
-                                    &found->participants, error);
+        status = cp_participants_of(
+            simulation->controls, impact,
+            (const bool[2]){found->car[0].had_crashed, found->car[1].had_crashed},
+            &found->participants, error);
     if (status == CP_OK && found_as == CP_FOUND_CRASH && simulation->history != NULL)
         status = remember_history(simulation, error);
     if (status == CP_OK)
@@ -249,8 +241,8 @@ static double gap_of(const cp_traffic *traffic, const cp_sumo_collision *collisi
     const cp_vehicle_motion *other = cp_traffic_motion_of(traffic, collision->victim);
     if (one == NULL || other == NULL)
         return INFINITY;
-    cp_rectangle rectangle[2] = {cp_footprint_of_state(&one->after),
-                                 cp_footprint_of_state(&other->after)};
+    cp_rectangle rectangle[2] = {cp_vehicle_rectangle(&one->after),
+                                 cp_vehicle_rectangle(&other->after)};
     return cp_rectangle_separation(&rectangle[0], &rectangle[1]);
 }
 
@@ -258,7 +250,7 @@ static cp_status take_sumo_collisions(cp_simulation *simulation, cp_error *error
 {
     const cp_sumo_collision *collisions = NULL;
     size_t count = 0;
-    cp_status status = sumo_bridge_collisions(&collisions, &count, error);
+    cp_status status = cp_traffic_collisions(simulation->traffic, &collisions, &count, error);
     for (size_t k = 0; status == CP_OK && k < count; k++)
         status = cp_cross_check_add_report(&simulation->check, collisions[k].collider,
                                            collisions[k].victim, collisions[k].type,

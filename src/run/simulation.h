@@ -5,26 +5,28 @@
 #include "control/control.h"
 #include "impact/impact.h"
 #include "run/cross_check.h"
+#include "run/found_as.h"
 #include "run/history.h"
+#include "run/sumo_words.h"
 #include "store/participant_rows.h"
-#include "study/study_file.h"
 
 /* The traffic of one replication, step by step: what the baseline and every branch from a
  * checkpoint of it go through alike. In the worker process only. */
 
-/* A contact and what became of it; static text. */
-extern const char CP_FOUND_CRASH[];       /* confirmed and counted */
-extern const char CP_FOUND_AFTER_CRASH[]; /* one of the two had crashed in the same step already */
-extern const char CP_FOUND_WARMUP[];      /* confirmed, but before the end of the warm-up */
+/* What is known of one of the two cars of a contact, at the end of its step. */
+typedef struct cp_found_car {
+    bool at_fault;        /* a driver error is at work on it; never on a car that had crashed */
+    bool errs_alone;      /* one that is at work whoever the other is */
+    bool had_crashed;     /* it stands there since an earlier crash */
+    double error_since_s; /* SUMO clock: since when it has erred towards the other; INFINITY */
+} cp_found_car;
 
+/* A contact and what became of it. */
 typedef struct cp_found_contact {
     cp_impact impact;
-    const char *found_as;    /* one of the above, or the verdict of a contact that is no crash */
-    bool at_fault[2];        /* a driver error is at work on it; never on a car that had crashed */
-    bool errs_alone[2];      /* one that is at work whoever the other is */
-    double error_since_s[2]; /* SUMO clock: since when it has erred towards the other; INFINITY */
-    bool had_crashed[2];     /* it stands there since an earlier crash */
-    size_t follows;          /* index of that crash (of both cars' the first); CP_FOLLOWS_NONE */
+    cp_found_as found_as;
+    cp_found_car car[2]; /* by role */
+    size_t follows;      /* index of the first of the cars' earlier crashes; CP_FOLLOWS_NONE */
     cp_participant_rows participants; /* of crashes; owned by the simulation */
 } cp_found_contact;
 
@@ -34,6 +36,22 @@ typedef struct cp_found_history {
     cp_history_row *rows; /* owned */
     size_t count;
 } cp_found_history;
+
+/* What a simulation is of. Borrowed: the path as long as it lives, all else until it has begun. */
+typedef struct cp_simulation_settings {
+    cp_sumo_start sumo;
+    const cp_control_settings *drivers; /* driver errors */
+    size_t driver_count;
+    const cp_control_settings *functions; /* of every car */
+    size_t function_count;
+    bool is_treated;     /* functions will be added to it later (cp_controls_add_treatment) */
+    uint64_t study_seed; /* of draws that the replications of a study share, see control.h */
+    uint64_t seed;       /* of this replication */
+    double step_length_s;
+    double warmup_s;  /* contacts and exposure before it do not count */
+    double stay_s;    /* crashed cars stand on the road this long; 0: they leave it at once */
+    double history_s; /* kept of both cars before each counted crash; 0: none */
+} cp_simulation_settings;
 
 /* Zero-initialise, begin, step, end. */
 typedef struct cp_simulation {
@@ -58,12 +76,14 @@ typedef struct cp_simulation {
     size_t crashed_room;
 } cp_simulation;
 
-/* Start the traffic of a scenario with its drivers and the functions of a variant. Errors:
- * CP_BAD_INPUT for a configuration that does not start. End it in any case. */
-CP_MUST_CHECK cp_status cp_simulation_begin(const cp_study *study,
-                                            const cp_study_scenario *scenario,
-                                            const cp_study_variant *variant, uint64_t seed,
+/* Start SUMO with its drivers and functions. Errors: CP_BAD_INPUT for a configuration that does not
+ * start, CP_NO_MEMORY. End it in any case. */
+CP_MUST_CHECK cp_status cp_simulation_begin(const cp_simulation_settings *settings,
                                             cp_simulation *simulation, cp_error *error);
+/* The same on traffic that is there already and that the simulation takes over: a scripted road. */
+CP_MUST_CHECK cp_status cp_simulation_begin_on(const cp_simulation_settings *settings,
+                                               cp_traffic *traffic, cp_simulation *simulation,
+                                               cp_error *error);
 /* End SUMO and what works on it; what was found stays. Nothing of it may be asked of SUMO then. */
 void cp_simulation_end_traffic(cp_simulation *simulation);
 void cp_simulation_end(cp_simulation *simulation);

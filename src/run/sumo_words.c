@@ -23,7 +23,7 @@ static bool add(cp_sumo_words *words, const char *text)
 
 // The scenario's words but those that the bridge or the prefix below set: SUMO refuses an option
 // that comes twice.
-static bool add_scenario_words(const cp_study_scenario *scenario,
+static bool add_scenario_words(const cp_sumo_start *start,
                                const cp_sumo_configuration *configuration, cp_sumo_words *words)
 {
     bool good = true;
@@ -34,40 +34,39 @@ static bool add_scenario_words(const cp_study_scenario *scenario,
         bool is_ours = rule != NULL &&
                        (rule->treatment == CP_SUMO_REPLACED || rule->treatment == CP_SUMO_JOINED);
         for (size_t w = 0; good && !is_ours && w < setting->word_count; w++)
-            good = add(words, scenario->sumo_options[setting->word + w]);
+            good = add(words, start->options[setting->word + w]);
     }
     return good;
 }
 
 // Prefix of one replication: what tells it from the others, then theirs without its folder.
-static void join_prefix(const cp_study_scenario *scenario, const cp_study_variant *variant,
-                        uint64_t seed, const char *theirs, char prefix[CP_SUMO_PREFIX_SIZE])
+static void join_prefix(const cp_sumo_start *start, uint64_t seed, const char *theirs,
+                        char prefix[CP_SUMO_PREFIX_SIZE])
 {
     const char *slash = strrchr(theirs, '/');
-    bool has_name = scenario->name != NULL;
-    snprintf(prefix, CP_SUMO_PREFIX_SIZE, "%s%s%s_%" PRIu64 "_%s", has_name ? scenario->name : "",
-             has_name ? "_" : "", variant->name != NULL ? variant->name : CP_SUMO_PROBE_NAME, seed,
-             slash != NULL ? slash + 1 : theirs);
+    bool has_name = start->scenario != NULL;
+    snprintf(prefix, CP_SUMO_PREFIX_SIZE, "%s%s%s_%" PRIu64 "_%s", has_name ? start->scenario : "",
+             has_name ? "_" : "", start->variant != NULL ? start->variant : CP_SUMO_PROBE_NAME,
+             seed, slash != NULL ? slash + 1 : theirs);
 }
 
-cp_status cp_sumo_words_create(const cp_study_scenario *scenario, const cp_study_variant *variant,
-                               uint64_t seed, double stay_s, cp_sumo_words *words, cp_error *error)
+cp_status cp_sumo_words_create(const cp_sumo_start *start, uint64_t seed, double stay_s,
+                               cp_sumo_words *words, cp_error *error)
 {
     char prefix[CP_SUMO_PREFIX_SIZE], teleport[32];
     cp_sumo_configuration configuration = {0};
-    *words = (cp_sumo_words){.word = calloc(scenario->sumo_option_count + 4, sizeof(char *))};
+    *words = (cp_sumo_words){.word = calloc(start->option_count + 4, sizeof(char *))};
     if (words->word == NULL)
         return cp_fail_memory(error, "SUMO's options");
-    cp_status status =
-        cp_sumo_configuration_read(scenario->sumocfg_path, scenario->sumo_options,
-                                   scenario->sumo_option_count, &configuration, error);
+    cp_status status = cp_sumo_configuration_read(start->sumocfg_path, start->options,
+                                                  start->option_count, &configuration, error);
     if (status == CP_OK) {
         const cp_sumo_setting *theirs = cp_sumo_configuration_find(&configuration, "output-prefix");
         const cp_sumo_setting *set = cp_sumo_configuration_find(&configuration, "time-to-teleport");
-        join_prefix(scenario, variant, seed, theirs != NULL ? theirs->value : "", prefix);
+        join_prefix(start, seed, theirs != NULL ? theirs->value : "", prefix);
         snprintf(teleport, sizeof teleport, "%g", stay_s + TELEPORT_S);
-        bool good = add_scenario_words(scenario, &configuration, words) &&
-                    add(words, PREFIX_OPTION) && add(words, prefix);
+        bool good = add_scenario_words(start, &configuration, words) && add(words, PREFIX_OPTION) &&
+                    add(words, prefix);
         if (good && stay_s > 0.0 && (set == NULL || set->line > 0))
             good = add(words, TELEPORT_OPTION) && add(words, teleport);
         if (!good)

@@ -5,16 +5,49 @@
 #include "store/counterfactual_rows.h"
 
 #include <jansson.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+// A type whose cars are drawn crashes as several models: their names, in alphabetical order.
+static void add_model(json_t *type, const char *name)
+{
+    json_t *known = json_object_get(type, "model");
+    char models[1024] = "", *end = models;
+    const char *list = json_is_string(known) ? json_string_value(known) : "";
+    bool is_placed = false;
+    for (const char *at = list; *at != '\0';) {
+        size_t length = strcspn(at, ",");
+        int order = strncmp(name, at, length);
+        order = order == 0 && name[length] != '\0' ? 1 : order;
+        if (order == 0)
+            return;
+        if (!is_placed && order < 0)
+            end += snprintf(end, sizeof models - (size_t)(end - models), "%s,", name);
+        is_placed = is_placed || order < 0;
+        end += snprintf(end, sizeof models - (size_t)(end - models), "%.*s,", (int)length, at);
+        at += length + (at[length] == ',');
+    }
+    if (!is_placed)
+        end += snprintf(end, sizeof models - (size_t)(end - models), "%s,", name);
+    end[-1] = '\0';
+    json_object_set_new(type, "model", json_string(models));
+}
 
 static void add_vehicle(json_t *types, const cp_crash_vehicle_row *vehicle)
 {
-    if (json_object_get(types, vehicle->sumo_type) != NULL)
+    json_t *type = json_object_get(types, vehicle->sumo_type);
+    if (type != NULL && vehicle->no_model_reason[0] == '\0')
+        add_model(type, vehicle->vehicle_model);
+    if (type != NULL)
         return;
     bool has_model = vehicle->no_model_reason[0] == '\0';
     if (!has_model)
-        cp_log_warning("crashes of vehicle type %s are kept without a severity: %s",
-                       vehicle->sumo_type, vehicle->no_model_reason);
+        cp_log_warning(
+            "crashes of vehicle type %s are kept without a severity: %s; this line of the "
+            "study file gives them MODEL, a shipped one or a vehicle file: vehicles: "
+            "{types: [{type: \"%s\", model: MODEL}]}",
+            vehicle->sumo_type, vehicle->no_model_reason, vehicle->sumo_type);
     json_object_set_new(types, vehicle->sumo_type,
                         json_pack("{s:s?, s:s?, s:s?}", "model",
                                   has_model ? vehicle->vehicle_model : NULL, "chosen_by",

@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/worker.h"
 
+#include "control/acting.h"
 #include "core/file.h"
 #include "core/progress.h"
 #include "crash/crash_simulation.h"
 #include "run/background.h"
 #include "run/confinement.h"
-#include "run/fleet.h"
+#include "run/fleet_car.h"
 #include "run/owner.h"
 #include "run/replication.h"
 #include "run/vehicle_types.h"
 #include "store/claim.h"
 #include "store/stored_crash.h"
 #include "study/plan.h"
+#include "study/study_file.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -21,15 +23,15 @@
 
 // Before SUMO reads what others wrote. SQLite's own temporary files go where the database is, the
 // only other place that is left.
-static cp_status confine(const cp_study_scenario *scenario, const char *db_path,
-                         const char *result_path, cp_error *error)
+static cp_status confine(const char *sumocfg_path, const char *db_path, const char *result_path,
+                         cp_error *error)
 {
-    char *own = cp_file_beside(scenario->sumocfg_path, ".");
-    char *of_db = cp_file_beside(db_path != NULL ? db_path : scenario->sumocfg_path, ".");
+    char *own = cp_file_beside(sumocfg_path, ".");
+    char *of_db = cp_file_beside(db_path != NULL ? db_path : sumocfg_path, ".");
     const char *folders[] = {own, of_db, result_path};
     cp_status status = CP_OK;
     if (own == NULL || of_db == NULL || setenv("SQLITE_TMPDIR", of_db, 1) != 0)
-        status = cp_fail_memory(error, scenario->sumocfg_path);
+        status = cp_fail_memory(error, sumocfg_path);
     else
         status = cp_confine(folders, result_path != NULL ? 3 : 2, error);
     free(own);
@@ -87,8 +89,21 @@ static cp_status run_claimed(const cp_study *study, const cp_fleet *fleet,
     return status;
 }
 
+// Libraries are loaded when that is allowed, and watched.
+static cp_status admit_libraries(const cp_study *study, bool allow_plugins, cp_error *error)
+{
+    const cp_study_variant *variant = NULL;
+    const cp_library *library = cp_study_library(study, 0, &variant);
+    if (library == NULL)
+        return CP_OK;
+    if (!allow_plugins)
+        return cp_fail(error, CP_BAD_INPUT, "%s: variant %s loads %s, which is not allowed",
+                       study->path, variant->name, library->written);
+    return cp_acting_watch(CP_WORKER_REPORT_FD, error);
+}
+
 cp_status cp_worker_run(const char *study_path, const char *db_path, int64_t replication_id,
-                        bool free_outputs, int *elsewhere, cp_error *error)
+                        bool free_outputs, bool allow_plugins, int *elsewhere, cp_error *error)
 {
     cp_study study = {0};
     cp_fleet fleet = {0};
@@ -96,6 +111,8 @@ cp_status cp_worker_run(const char *study_path, const char *db_path, int64_t rep
     int attempt = 0;
     *elsewhere = 0;
     cp_status status = cp_study_load(study_path, &study, error);
+    if (status == CP_OK)
+        status = admit_libraries(&study, allow_plugins, error);
     if (status == CP_OK)
         status = cp_fleet_load(&study, &fleet, error);
     if (status == CP_OK)
@@ -111,10 +128,11 @@ cp_status cp_worker_run(const char *study_path, const char *db_path, int64_t rep
         goto done;
     }
     if (!free_outputs)
-        status = confine(&study.scenarios[replication->scenario], db_path, NULL, error);
+        status = confine(study.scenarios[replication->scenario].sumocfg_path, db_path, NULL, error);
     if (status == CP_OK)
         status = claim(db_path, replication, &attempt, error);
     *elsewhere = status == CP_OK && attempt == 0;
+    cp_fleet_begin(&fleet, replication->number);
     if (status == CP_OK && attempt > 0)
         status = run_claimed(&study, &fleet, replication, attempt, db_path, error);
 done:
@@ -135,7 +153,7 @@ cp_status cp_worker_probe(const char *study_path, const char *scenario, bool fre
     if (found == NULL)
         status = cp_fail(error, CP_BAD_INPUT, "%s: has no scenario '%s'", study_path, scenario);
     else if (!free_outputs)
-        status = confine(found, NULL, NULL, error);
+        status = confine(found->sumocfg_path, NULL, NULL, error);
     if (status == CP_OK)
         status = cp_replication_probe(&study, found, error);
     cp_study_destroy(&study);
@@ -143,6 +161,9 @@ cp_status cp_worker_probe(const char *study_path, const char *scenario, bool fre
 }
 
 // ---- backgrounds ---------------------------------------------------------------------------
+
+// In the names of files that SUMO writes; no variant can be called so.
+static const char BACKGROUND_NAME[] = "@background";
 
 // Before minutes of simulation: has the database a place for the result?
 static cp_status check_place(const cp_background_job *job, cp_error *error)
@@ -166,7 +187,7 @@ static cp_status run_background(const cp_background_job *job, const cp_backgroun
     snprintf(rows.configuration_hash, sizeof rows.configuration_hash, "%s", configuration_hash);
     cp_status status = CP_OK;
     if (!job->free_outputs)
-        status = confine(options->scenario, job->db_path, job->result_path, error);
+        status = confine(options->sumo.sumocfg_path, job->db_path, job->result_path, error);
     if (status == CP_OK)
         status = check_place(job, error);
     if (status == CP_OK)
@@ -204,7 +225,11 @@ static cp_status study_background(const cp_background_job *job, const cp_study *
 
     // The study's own run, unless seed or length are others.
     cp_background_options options = {.network = scenario->name,
-                                     .scenario = scenario,
+                                     .sumo = {.sumocfg_path = scenario->sumocfg_path,
+                                              .options = scenario->sumo_options,
+                                              .option_count = scenario->sumo_option_count,
+                                              .scenario = scenario->name,
+                                              .variant = BACKGROUND_NAME},
                                      .seed = job->seed != NULL ? *job->seed : own.seed,
                                      .step_length_s = study->step_length_s,
                                      .duration_s =
@@ -218,12 +243,12 @@ static cp_status study_background(const cp_background_job *job, const cp_study *
 cp_status cp_worker_background(const cp_background_job *job, cp_error *error)
 {
     if (job->scenario == NULL) {
-        cp_study_scenario bare = {.sumocfg_path = (char *)job->path};
-        cp_background_options options = {.network = job->path,
-                                         .scenario = &bare,
-                                         .seed = *job->seed,
-                                         .step_length_s = job->step_length_s,
-                                         .duration_s = job->duration_s};
+        cp_background_options options = {
+            .network = job->path,
+            .sumo = {.sumocfg_path = job->path, .variant = BACKGROUND_NAME},
+            .seed = *job->seed,
+            .step_length_s = job->step_length_s,
+            .duration_s = job->duration_s};
         return run_background(job, &options, "", error);
     }
     cp_study study = {0};

@@ -22,11 +22,12 @@
  * the folders of the scenario's .sumocfg and of the database and to the result file; unless
  * free_outputs: whoever started it lets SUMO write and connect where the scenario says. */
 
-/* Claim, run and commit one replication of the study. *elsewhere tells that it was not to be had;
- * that is no error. The database is closed while the replication runs. */
+/* Claim, run and commit one replication of the study. allow_plugins: libraries that the study
+ * brings along are loaded; without, a study with one is refused. *elsewhere tells that it was not
+ * to be had; that is no error. The database is closed while the replication runs. */
 CP_MUST_CHECK cp_status cp_worker_run(const char *study_path, const char *db_path,
-                                      int64_t replication_id, bool free_outputs, int *elsewhere,
-                                      cp_error *error);
+                                      int64_t replication_id, bool free_outputs, bool allow_plugins,
+                                      int *elsewhere, cp_error *error);
 
 /* Start a scenario of the study and make one step. Errors: CP_BAD_INPUT with SUMO's message. */
 CP_MUST_CHECK cp_status cp_worker_probe(const char *study_path, const char *scenario,

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <signal.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
@@ -29,6 +30,7 @@ typedef struct worker_arguments {
     const char *step_length;
     const char *duration;
     bool free_outputs;
+    bool allow_plugins;
 } worker_arguments;
 
 static const struct argp_option OPTIONS[] = {
@@ -46,6 +48,8 @@ static const struct argp_option OPTIONS[] = {
     {"duration", 't', "S", 0, "for this long (default: the study's)", 0},
     {"expect", 'e', "HASH", 0, "if the study's run has this configuration", 0},
     {"allow-sumo-outputs", 'o', NULL, 0, "Let SUMO write and connect where the scenario says", 0},
+    {"version", 'V', NULL, 0, "Only print the version, with libsumo loaded", 0},
+    {"allow-plugins", 'L', NULL, 0, "Load the libraries that the study names", 0},
     {0}};
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
@@ -88,8 +92,14 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case 'e':
         arguments->expect = argument;
         return 0;
+    case 'V':
+        puts("crashpulse-worker " CRASHPULSE_VERSION);
+        exit(CP_WORKER_EXIT_DONE);
     case 'o':
         arguments->free_outputs = true;
+        return 0;
+    case 'L':
+        arguments->allow_plugins = true;
         return 0;
     case ARGP_KEY_END:
         if (arguments->background != NULL) {
@@ -166,6 +176,7 @@ int main(int argc, char **argv)
     cp_error error = {0};
     int elsewhere = 0;
     json_set_alloc_funcs(cp_memory_for_json, free); // or fields would be missing without a word
+    unsetenv(CP_LOG_FORMAT_VARIABLE); // its messages are passed on by whoever started it
     if (argp_parse(&ARGP, argc, argv, 0, NULL, &arguments) != 0)
         return 2;
     if (!follow_parent(arguments.parent))
@@ -176,6 +187,6 @@ int main(int argc, char **argv)
         arguments.probe != NULL
             ? cp_worker_probe(arguments.study, arguments.probe, arguments.free_outputs, &error)
             : cp_worker_run(arguments.study, arguments.db, strtoll(arguments.replication, NULL, 10),
-                            arguments.free_outputs, &elsewhere, &error);
+                            arguments.free_outputs, arguments.allow_plugins, &elsewhere, &error);
     return finish(status, elsewhere, &error);
 }

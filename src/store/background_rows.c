@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/background_rows.h"
 
+#include "core/array.h"
 #include "core/memory_stream.h"
 #include "store/store_sqlite.h"
 
@@ -12,17 +13,7 @@
 
 cp_background_contact_row *cp_background_rows_add_contact(cp_background_rows *rows)
 {
-    // Room doubles whenever the count is a power of two.
-    if ((rows->contact_count & (rows->contact_count - 1)) == 0) {
-        size_t room = rows->contact_count == 0 ? 1 : 2 * rows->contact_count;
-        cp_background_contact_row *larger = realloc(rows->contact, room * sizeof *larger);
-        if (larger == NULL)
-            return NULL;
-        rows->contact = larger;
-    }
-    cp_background_contact_row *added = &rows->contact[rows->contact_count++];
-    *added = (cp_background_contact_row){0};
-    return added;
+    return cp_array_add(rows->contact, rows->contact_count);
 }
 
 void cp_background_rows_destroy(cp_background_rows *rows)

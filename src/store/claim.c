@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/claim.h"
 
+#include "core/array.h"
 #include "store/store_sqlite.h"
 
 #include <math.h>
@@ -20,7 +21,6 @@ cp_status cp_claim_waiting(cp_store *store, int64_t **ids, size_t *count, cp_err
 {
     cp_statement s;
     int row = 0;
-    size_t capacity = 0;
     *ids = NULL;
     *count = 0;
     cp_status status = cp_statement_prepare(
@@ -33,16 +33,11 @@ cp_status cp_claim_waiting(cp_store *store, int64_t **ids, size_t *count, cp_err
         status = cp_statement_row(&s, &row, error);
         if (status != CP_OK || !row)
             break;
-        if (*count == capacity) {
-            capacity = capacity == 0 ? 64 : 2 * capacity;
-            int64_t *larger = realloc(*ids, capacity * sizeof **ids);
-            if (larger == NULL) {
-                status = cp_fail_memory(error, "queue of replications");
-                break;
-            }
-            *ids = larger;
-        }
-        (*ids)[(*count)++] = sqlite3_column_int64(s.handle, 0);
+        int64_t *id = cp_array_add(*ids, *count);
+        if (id != NULL)
+            *id = sqlite3_column_int64(s.handle, 0);
+        else
+            status = cp_fail_memory(error, "queue of replications");
     }
     cp_statement_finish(&s);
     if (status != CP_OK) {

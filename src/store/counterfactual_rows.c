@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/counterfactual_rows.h"
 
+#include "core/array.h"
 #include "core/hash.h"
 #include "crash/validity.h"
 #include "pulse/pulse_codec.h"
@@ -52,35 +53,14 @@ double cp_crash_row_olc_g(const cp_crash_row *crash)
 
 // ---- collecting ----------------------------------------------------------------------------
 
-// Room for one more element, zeroed; growth by doubling at powers of two.
-static void *grow(void **array, size_t *count, size_t size)
-{
-    if ((*count & (*count - 1)) == 0) {
-        void *larger = realloc(*array, (*count == 0 ? 1 : 2 * *count) * size);
-        if (larger == NULL)
-            return NULL;
-        *array = larger;
-    }
-    void *added = (char *)*array + *count * size;
-    memset(added, 0, size);
-    (*count)++;
-    return added;
-}
-
 cp_null_treatment_row *cp_counterfactual_rows_add_null(cp_counterfactual_rows *rows)
 {
-    void *array = rows->null_treatment;
-    cp_null_treatment_row *added = grow(&array, &rows->null_treatment_count, sizeof *added);
-    rows->null_treatment = array;
-    return added;
+    return cp_array_add(rows->null_treatment, rows->null_treatment_count);
 }
 
 cp_counterfactual_row *cp_counterfactual_rows_add(cp_counterfactual_rows *rows)
 {
-    void *array = rows->row;
-    cp_counterfactual_row *added = grow(&array, &rows->row_count, sizeof *added);
-    rows->row = array;
-    return added;
+    return cp_array_add(rows->row, rows->row_count);
 }
 
 void cp_counterfactual_rows_destroy(cp_counterfactual_rows *rows)
@@ -261,7 +241,8 @@ static cp_status prepare(writer *w, cp_store *store, cp_error *error)
             store, what,
             "INSERT INTO counterfactual_vehicle VALUES (?1, ?3, ?2, ?5, ?6, ?7, ?8, ?9, ?10, ?11, "
             "?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, ?26, ?27, ?28, "
-            "?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40, ?41, ?42, ?43, ?44, ?45)",
+            "?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40, ?41, ?42, ?43, ?44, ?45, "
+            "?46, ?47, ?48, ?49, ?50, ?51, ?52)",
             &w->vehicle, error);
     if (status == CP_OK)
         status = cp_statement_prepare(
@@ -298,33 +279,5 @@ cp_status cp_counterfactual_rows_write(cp_store *store, int64_t replication_id,
     cp_statement_finish(&w.vehicle);
     cp_statement_finish(&w.row);
     cp_statement_finish(&w.null_treatment);
-    return status;
-}
-
-cp_status cp_counterfactual_pulse_read(cp_store *store, int64_t crash_id, const char *variant,
-                                       const char *role, cp_pulse *pulse, bool *there,
-                                       cp_error *error)
-{
-    cp_statement s;
-    int row = 0;
-    *pulse = (cp_pulse){0};
-    cp_status status = cp_statement_prepare(
-        store, "reading a pulse",
-        "SELECT codec, samples, sample_count, sample_interval_s FROM counterfactual_pulse "
-        "WHERE crash_id = ?1 AND role = ?2 AND variant_id IN (SELECT id FROM variant WHERE name = "
-        "?3)",
-        &s, error);
-    cp_bind_integer(&s, 1, crash_id);
-    cp_bind_text(&s, 2, role);
-    cp_bind_text(&s, 3, variant);
-    if (status == CP_OK)
-        status = cp_statement_row(&s, &row, error);
-    *there = status == CP_OK && row;
-    if (*there)
-        status = cp_pulse_decode(sqlite3_column_int(s.handle, 0), sqlite3_column_blob(s.handle, 1),
-                                 (size_t)sqlite3_column_bytes(s.handle, 1),
-                                 sqlite3_column_int64(s.handle, 2),
-                                 sqlite3_column_double(s.handle, 3), pulse, error);
-    cp_statement_finish(&s);
     return status;
 }

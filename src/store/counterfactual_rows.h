@@ -2,7 +2,10 @@
 #ifndef STORE_COUNTERFACTUAL_ROWS_H
 #define STORE_COUNTERFACTUAL_ROWS_H
 
-#include "store/result_rows.h"
+#include "store/crash_rows.h"
+#include "store/store.h"
+
+#include <stdint.h>
 
 /* What became of each crash of a baseline replication under each treatment, as rows of the
  * database. Columns and outcomes are described in db/schema/002_counterfactual.sql. */
@@ -105,12 +108,5 @@ double cp_crash_row_olc_g(const cp_crash_row *crash);
 CP_MUST_CHECK cp_status cp_counterfactual_rows_write(cp_store *store, int64_t replication_id,
                                                      const cp_counterfactual_rows *rows,
                                                      cp_error *error);
-
-/* The stored pulse of a vehicle ("a", "b") of the crash that the baseline's crash crash_id became
- * under the treatment called variant; *there is false, and pulse empty, when none is stored. The
- * caller destroys pulse. Errors: those of the store; CP_BAD_INPUT for a damaged pulse. */
-CP_MUST_CHECK cp_status cp_counterfactual_pulse_read(cp_store *store, int64_t crash_id,
-                                                     const char *variant, const char *role,
-                                                     cp_pulse *pulse, bool *there, cp_error *error);
 
 #endif

@@ -3,15 +3,16 @@
 #define STORE_CRASH_BINDING_H
 
 #include "crash/validity.h"
-#include "store/result_rows.h"
+#include "store/crash_rows.h"
 #include "store/store_sqlite.h"
 
 /* What crash_vehicle and counterfactual_vehicle have in common; for the files of this folder. */
 
 #define CP_CRASHES_MAX (1 << 14) /* per replication: room in the row id, below 2^53 */
 
-/* Parameters 5 to 45: frontal, the columns from sumo_id to contact_side, validity, severity, mass
- * and place, number of driver errors, of the vehicle of a role. The text of validity is borrowed
+/* Parameters 5 to 52: frontal, the columns from sumo_id to contact_side, validity, severity, mass
+ * and place, number of driver errors, intrusion, what was drawn and evidence, of the vehicle of a
+ * role. The text of validity is borrowed
  * until the statement has run. */
 void cp_bind_crash_vehicle(cp_statement *statement, const cp_crash_row *crash, int role,
                            char validity[CP_VALIDITY_TEXT_SIZE]);

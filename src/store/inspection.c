@@ -2,7 +2,7 @@
 #include "store/inspection.h"
 
 #include "core/hash.h"
-#include "pulse/pulse_codec.h"
+#include "store/pulse_columns.h"
 #include "store/store_sqlite.h"
 
 #include <stdio.h>
@@ -171,10 +171,7 @@ static cp_status check_pulse(const cp_statement *s, cp_inspection_result *result
     cp_error damage = {0};
     char text[512], treatment[64] = "";
     result->looked_at++;
-    cp_status status = cp_pulse_decode(
-        sqlite3_column_int(s->handle, 2), sqlite3_column_blob(s->handle, 3),
-        (size_t)sqlite3_column_bytes(s->handle, 3), sqlite3_column_int64(s->handle, 4),
-        sqlite3_column_double(s->handle, 5), &pulse, &damage);
+    cp_status status = cp_pulse_of_columns(s, 2, &pulse, &damage);
     cp_pulse_destroy(&pulse);
     if (status != CP_OK && status != CP_BAD_INPUT)
         return cp_fail(error, status, "%s", damage.text);
@@ -212,8 +209,8 @@ static cp_status check_pairs(cp_store *store, cp_inspection *inspection, cp_erro
         status = apply_rule(store, &PAIR_RULES[k], inspection, error);
     if (status == CP_OK && pairs)
         status = check_pulses(store, "stored pulses of treated vehicles",
-                              "SELECT crash_id, role, codec, samples, sample_count, "
-                              "sample_interval_s, variant_id FROM counterfactual_pulse",
+                              "SELECT crash_id, role, " CP_PULSE_COLUMNS
+                              ", variant_id FROM counterfactual_pulse",
                               inspection, error);
     return status;
 }
@@ -228,8 +225,7 @@ cp_status cp_inspection_run(cp_store *store, cp_inspection *inspection, cp_error
         status = check_vehicle_files(store, inspection, error);
     if (status == CP_OK)
         status = check_pulses(store, "stored pulses",
-                              "SELECT crash_id, role, codec, samples, sample_count, "
-                              "sample_interval_s, NULL FROM pulse",
+                              "SELECT crash_id, role, " CP_PULSE_COLUMNS ", NULL FROM pulse",
                               inspection, error);
     if (status == CP_OK)
         status = check_pairs(store, inspection, error);

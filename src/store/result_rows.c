@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/result_rows.h"
 
+#include "core/array.h"
 #include "crash/validity.h"
 #include "pulse/pulse_codec.h"
 #include "store/counterfactual_rows.h"
@@ -15,59 +16,19 @@ static const char *const ROLE[2] = {"a", "b"};
 
 // ---- collecting ----------------------------------------------------------------------------
 
-// Room for one more element, zeroed; growth by doubling at powers of two.
-static void *grow(void **array, size_t *count, size_t size)
-{
-    if ((*count & (*count - 1)) == 0) {
-        void *larger = realloc(*array, (*count == 0 ? 1 : 2 * *count) * size);
-        if (larger == NULL)
-            return NULL;
-        *array = larger;
-    }
-    void *added = (char *)*array + *count * size;
-    memset(added, 0, size);
-    (*count)++;
-    return added;
-}
-
 cp_crash_row *cp_result_rows_add_crash(cp_result_rows *rows)
 {
-    void *array = rows->crash;
-    cp_crash_row *added = grow(&array, &rows->crash_count, sizeof *added);
-    rows->crash = array;
-    return added;
+    return cp_array_add(rows->crash, rows->crash_count);
 }
 
 cp_contact_row *cp_result_rows_add_contact(cp_result_rows *rows)
 {
-    void *array = rows->contact;
-    cp_contact_row *added = grow(&array, &rows->contact_count, sizeof *added);
-    rows->contact = array;
-    return added;
+    return cp_array_add(rows->contact, rows->contact_count);
 }
 
 cp_sumo_collision_row *cp_result_rows_add_sumo_collision(cp_result_rows *rows)
 {
-    void *array = rows->sumo_collision;
-    cp_sumo_collision_row *added = grow(&array, &rows->sumo_collision_count, sizeof *added);
-    rows->sumo_collision = array;
-    return added;
-}
-
-void cp_crash_row_destroy(cp_crash_row *crash)
-{
-    for (int v = 0; v < 2; v++) {
-        free(crash->vehicle[v].sumo_id);
-        free(crash->vehicle[v].sumo_type);
-        free(crash->vehicle[v].vehicle_model);
-        free(crash->vehicle[v].lane);
-        free(crash->vehicle[v].edge);
-        free(crash->vehicle[v].junction);
-        free(crash->vehicle[v].pulse);
-    }
-    cp_participant_rows_destroy(&crash->participants);
-    free(crash->history);
-    *crash = (cp_crash_row){0};
+    return cp_array_add(rows->sumo_collision, rows->sumo_collision_count);
 }
 
 void cp_result_rows_destroy(cp_result_rows *rows)
@@ -132,76 +93,6 @@ static cp_status write_crash(cp_statement *s, const cp_result_rows *rows, size_t
     return cp_statement_run(s, error);
 }
 
-static void bind_vehicle_state(cp_statement *s, const cp_crash_vehicle_row *vehicle)
-{
-    cp_bind_integer(s, 5, vehicle->side == CP_SIDE_FRONT);
-    cp_bind_text(s, 6, vehicle->sumo_id);
-    cp_bind_text(s, 7, vehicle->sumo_type);
-    cp_bind_text(s, 8, vehicle->vehicle_model);
-    cp_bind_integer(s, 9, vehicle->at_fault);
-    cp_bind_real(s, 10, vehicle->body.cog_m.x);
-    cp_bind_real(s, 11, vehicle->body.cog_m.y);
-    cp_bind_real(s, 12, vehicle->body.yaw_rad);
-    cp_bind_real(s, 13, vehicle->body.velocity_m_s.x);
-    cp_bind_real(s, 14, vehicle->body.velocity_m_s.y);
-    cp_bind_real(s, 15, vehicle->body.yaw_rate_rad_s);
-    cp_bind_real(s, 16, vehicle->speed_m_s);
-    cp_bind_real(s, 17, vehicle->length_m);
-    cp_bind_real(s, 18, vehicle->width_m);
-    cp_bind_real(s, 19, vehicle->velocity_angle_rad);
-    cp_bind_text(s, 20, cp_contact_side_text(vehicle->side));
-}
-
-static void bind_severity(cp_statement *s, const cp_crash_vehicle_row *vehicle)
-{
-    const cp_severity *severity = &vehicle->severity;
-    bool value = severity->olc.status == CP_OLC_VALUE;
-    cp_bind_real(s, 22, value ? severity->olc.olc_g : NAN);
-    cp_bind_text(s, 23, cp_olc_status_text(severity->olc.status));
-    cp_bind_real(s, 24, value ? severity->olc.t1_s : NAN);
-    cp_bind_real(s, 25, value ? severity->olc.t2_s : NAN);
-    cp_bind_real(s, 26, severity->delta_v_m_s);
-    cp_bind_real(s, 27, severity->delta_v_x_m_s);
-    cp_bind_real(s, 28, severity->delta_v_y_m_s);
-    cp_bind_real(s, 29, severity->peak_g);
-    cp_bind_real(s, 30, severity->mean_g);
-    cp_bind_real(s, 31, severity->t_v0_s);
-    cp_bind_real(s, 32, severity->max_50ms_g);
-    cp_bind_real(s, 33, severity->asi_1);
-    cp_bind_real(s, 34, severity->pdof_rad);
-    cp_bind_real(s, 35, severity->yaw_change_rad_s);
-    cp_bind_real(s, 36, vehicle->crush_m);
-    cp_bind_real(s, 37, severity->end_s);
-    cp_bind_real(s, 38, vehicle->absorbed_j);
-    cp_bind_real(s, 39, vehicle->ees_m_s);
-    cp_bind_real(s, 40, vehicle->olc_sd_g);
-}
-
-// Who and where: parameters 41 to 45.
-static void bind_place(cp_statement *s, const cp_crash_row *crash, int role)
-{
-    const cp_crash_vehicle_row *vehicle = &crash->vehicle[role];
-    int errors = cp_participant_error_count(&crash->participants, role);
-    cp_bind_real(s, 41, vehicle->mass_kg);
-    cp_bind_text(s, 42, vehicle->lane);
-    cp_bind_text(s, 43, vehicle->edge);
-    cp_bind_text(s, 44, vehicle->junction);
-    if (errors < 0)
-        cp_bind_text(s, 45, NULL);
-    else
-        cp_bind_integer(s, 45, errors);
-}
-
-void cp_bind_crash_vehicle(cp_statement *s, const cp_crash_row *crash, int role,
-                           char validity[CP_VALIDITY_TEXT_SIZE])
-{
-    const cp_crash_vehicle_row *vehicle = &crash->vehicle[role];
-    bind_vehicle_state(s, vehicle);
-    cp_bind_text(s, 21, cp_validity_text(vehicle->outside, validity));
-    bind_severity(s, vehicle);
-    bind_place(s, crash, role);
-}
-
 static cp_status write_vehicle(cp_statement *s, const cp_result_rows *rows, size_t number, int role,
                                cp_error *error)
 {
@@ -228,21 +119,6 @@ static cp_status write_pulse(cp_statement *s, const cp_result_rows *rows, size_t
     cp_bind_integer(s, 5, (int64_t)vehicle->sample_count);
     cp_bind_blob(s, 6, vehicle->pulse, vehicle->pulse_size);
     return cp_statement_run(s, error);
-}
-
-// OLC by every parameter set, parameters 1 to key being bound already.
-cp_status cp_write_members(cp_statement *s, int key, const cp_crash_vehicle_row *vehicle,
-                           cp_error *error)
-{
-    cp_status status = CP_OK;
-    for (size_t m = 0; status == CP_OK && m < vehicle->member_count; m++) {
-        const cp_olc *olc = &vehicle->member[m];
-        cp_bind_integer(s, key + 1, (int64_t)m);
-        cp_bind_real(s, key + 2, olc->status == CP_OLC_VALUE ? olc->olc_g : NAN);
-        cp_bind_text(s, key + 3, cp_olc_status_text(olc->status));
-        status = cp_statement_run(s, error);
-    }
-    return status;
 }
 
 static cp_status write_members(cp_statement *s, const cp_result_rows *rows, size_t number, int role,
@@ -295,7 +171,7 @@ static cp_status write_crashes(cp_store *store, const cp_result_rows *rows, cp_e
             "INSERT INTO crash_vehicle SELECT ?1, ?2, scenario_id, variant_id, ?4, ?5, ?6, ?7, ?8, "
             "?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, "
             "?26, ?27, ?28, ?29, ?30, ?31, ?32, ?33, ?34, ?35, ?36, ?37, ?38, ?39, ?40, ?41, ?42, "
-            "?43, ?44, ?45 FROM replication WHERE id = ?3",
+            "?43, ?44, ?45, ?46, ?47, ?48, ?49, ?50, ?51, ?52 FROM replication WHERE id = ?3",
             &vehicle, error);
     if (status == CP_OK)
         status = cp_statement_prepare(
@@ -451,34 +327,5 @@ cp_status cp_result_rows_commit(cp_store *store, const cp_result_rows *rows, cp_
         status = cp_store_commit(store, error);
     if (status != CP_OK)
         cp_store_rollback(store);
-    return status;
-}
-
-// ---- reading -------------------------------------------------------------------------------
-
-cp_status cp_result_pulse_read(cp_store *store, int64_t crash_id, const char *role, cp_pulse *pulse,
-                               cp_error *error)
-{
-    cp_statement s;
-    int row = 0;
-    *pulse = (cp_pulse){0};
-    cp_status status = cp_statement_prepare(
-        store, "reading a pulse",
-        "SELECT codec, samples, sample_count, sample_interval_s FROM pulse WHERE crash_id = ?1 AND "
-        "role = ?2",
-        &s, error);
-    cp_bind_integer(&s, 1, crash_id);
-    cp_bind_text(&s, 2, role);
-    if (status == CP_OK)
-        status = cp_statement_row(&s, &row, error);
-    if (status == CP_OK && !row)
-        status = cp_fail(error, CP_BAD_INPUT, "%s: there is no pulse of vehicle %s of crash %lld",
-                         cp_store_path(store), role, (long long)crash_id);
-    if (status == CP_OK)
-        status = cp_pulse_decode(sqlite3_column_int(s.handle, 0), sqlite3_column_blob(s.handle, 1),
-                                 (size_t)sqlite3_column_bytes(s.handle, 1),
-                                 sqlite3_column_int64(s.handle, 2),
-                                 sqlite3_column_double(s.handle, 3), pulse, error);
-    cp_statement_finish(&s);
     return status;
 }

@@ -5,10 +5,23 @@
 #include "store/store.h"
 
 #include <sqlite3.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 /* SQLite under the store; for the files of this folder only. */
+
+/* How long a connection waits for others. */
+#define CP_STORE_BUSY_TIMEOUT_MS 60000
+
+struct cp_store {
+    char *path;
+    char *file_name; /* the same as SQLite takes it: ':memory:' and 'file:x' are names too */
+    sqlite3 *handle;
+    int in_transaction;
+    bool may_write;
+    bool keeps_log; /* put into WAL mode by this connection */
+};
 
 sqlite3 *cp_store_sqlite(cp_store *store);
 

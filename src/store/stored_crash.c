@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/stored_crash.h"
 
+#include "crash/drawn_car.h"
 #include "pulse/pulse_codec.h"
+#include "store/pulse_columns.h"
 #include "store/result_rows.h"
 #include "store/store_sqlite.h"
 
@@ -50,10 +52,10 @@ static const char *text_of(const cp_statement *s, int column)
     "SELECT v.cog_x_m, v.cog_y_m, v.yaw_rad, v.velocity_x_m_s, v.velocity_y_m_s, "                 \
     "v.yaw_rate_rad_s, v.speed_m_s, v.velocity_angle_rad, v.contact_side, v.sumo_id, "             \
     "v.vehicle_model, m.yaml, v.length_m, v.width_m, coalesce(r.crash_options ->> "                \
-    "'covers_outline', 0), v.sumo_type, instr(',' || v.validity || ',', ',no_model,') > 0 "
+    "'covers_outline', 0), v.sumo_type, instr(',' || v.validity || ',', ',no_model,') > 0, "       \
+    "v.drawn "
 #define OF_REPLICATION                                                                             \
     "JOIN crash AS c ON c.id = v.crash_id JOIN replication AS r ON r.id = c.replication_id "
-#define PULSE_COLUMNS "SELECT codec, samples, sample_count, sample_interval_s "
 
 // Queries for crash ?1 and vehicle ?2: of the study, and under treatment ?3.
 static const char *const READ_CRASH[2] = {
@@ -72,8 +74,9 @@ static const char *const READ_VEHICLE[2] = {
                     "v.vehicle_model " OF_REPLICATION
                     "WHERE v.crash_id = ?1 AND v.role = ?2 AND v.variant_id = ?3"};
 static const char *const READ_PULSE[2] = {
-    PULSE_COLUMNS "FROM pulse WHERE crash_id = ?1 AND role = ?2 AND ?3 IS NULL", PULSE_COLUMNS
-    "FROM counterfactual_pulse WHERE crash_id = ?1 AND role = ?2 AND variant_id = ?3"};
+    "SELECT " CP_PULSE_COLUMNS " FROM pulse WHERE crash_id = ?1 AND role = ?2 AND ?3 IS NULL",
+    "SELECT " CP_PULSE_COLUMNS
+    " FROM counterfactual_pulse WHERE crash_id = ?1 AND role = ?2 AND variant_id = ?3"};
 
 // Prepare one of them for the crash and run it; row tells whether there is an answer.
 static cp_status begin_reading(cp_store *store, const char *what, const char *const sql[2],
@@ -171,6 +174,18 @@ static cp_status cover(cp_store *store, cp_stored_crash *crash, int role, double
     return status;
 }
 
+// The car of a vehicle class that was drawn.
+static cp_status take_drawn(cp_store *store, cp_stored_crash *crash, int role, const char *text,
+                            cp_error *error)
+{
+    const cp_vehicle_model of_class = crash->model[role];
+    cp_status status = cp_drawn_car_read(&of_class, text, &crash->model[role], error);
+    return status == CP_OK
+               ? CP_OK
+               : cp_error_prefix(error, "%s: crash %lld: vehicle %s: ", cp_store_path(store),
+                                 (long long)crash->id, ROLE[role]);
+}
+
 static cp_status read_crash(cp_store *store, const char *treatment, cp_stored_crash *crash,
                             cp_error *error)
 {
@@ -246,6 +261,8 @@ static cp_status read_vehicle(cp_store *store, int role, cp_stored_crash *crash,
                                         (size_t)sqlite3_column_bytes(s.handle, 11),
                                         &crash->model[role], error);
     }
+    if (status == CP_OK)
+        status = take_drawn(store, crash, role, text_of(&s, 17), error);
     // As it was simulated; rows of earlier versions have the model's own outline.
     if (status == CP_OK && sqlite3_column_int(s.handle, 14))
         status = cover(store, crash, role, sqlite3_column_double(s.handle, 12),
@@ -277,10 +294,7 @@ static cp_status compare_samples(const cp_statement *s, const cp_pulse *record, 
                                  cp_error *error)
 {
     cp_pulse stored = {0};
-    cp_status status = cp_pulse_decode(
-        sqlite3_column_int(s->handle, 0), sqlite3_column_blob(s->handle, 1),
-        (size_t)sqlite3_column_bytes(s->handle, 1), sqlite3_column_int64(s->handle, 2),
-        sqlite3_column_double(s->handle, 3), &stored, error);
+    cp_status status = cp_pulse_of_columns(s, 0, &stored, error);
     *same = status == CP_OK && stored.sample_count == record->sample_count &&
             stored.sample_interval_s == record->sample_interval_s;
     for (int c = 0; *same && c < CP_CHANNEL_COUNT; c++)

@@ -7,13 +7,18 @@ static void write_controls(const cp_control_settings *settings, size_t count, FI
         fputs("none", out);
     for (size_t k = 0; k < count; k++) {
         const cp_control_settings *control = &settings[k];
-        fprintf(out, "%s%s", k > 0 ? "; " : "", control->type->name);
+        const cp_library *library = control->library;
+        fprintf(out, "%s%s", k > 0 ? "; " : "", cp_control_name(control));
+        if (library != NULL)
+            fprintf(out, " of %s", library->written);
         if (control->type->parameter_count == 0 && control->share_count == 0)
             continue;
         fputs(" (", out);
         for (size_t p = 0; p < control->type->parameter_count; p++)
             fprintf(out, "%s%s %.15g", p > 0 ? ", " : "", control->type->parameters[p].name,
                     control->parameter[p]);
+        for (size_t p = 0; library != NULL && p < library->given_count; p++)
+            fprintf(out, ", %s %s", library->given[p].name, library->given[p].text);
         for (size_t s = 0; s < control->share_count; s++)
             fprintf(out, "%s %s %.15g", s > 0 ? "," : "; equipment", control->shares[s].type,
                     control->shares[s].penetration_1);

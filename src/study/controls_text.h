@@ -2,7 +2,7 @@
 #ifndef STUDY_CONTROLS_TEXT_H
 #define STUDY_CONTROLS_TEXT_H
 
-#include "study/study_file.h"
+#include "study/study.h"
 
 #include <stdio.h>
 

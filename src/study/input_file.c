@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/input_file.h"
 
+#include "core/array.h"
 #include "core/file.h"
 #include "core/xml_file.h"
 
@@ -27,15 +28,11 @@ static void remove_comments(char *text)
 
 static cp_status append(char ***list, size_t *count, const char *text, cp_error *error)
 {
-    char **more = realloc(*list, (*count + 1) * sizeof *more);
-    if (more == NULL)
+    char **added = cp_array_add(*list, *count);
+    if (added == NULL)
         return cp_fail_memory(error, text);
-    *list = more;
-    more[*count] = strdup(text);
-    if (more[*count] == NULL)
-        return cp_fail_memory(error, text);
-    ++*count;
-    return CP_OK;
+    *added = strdup(text);
+    return *added != NULL ? CP_OK : cp_fail_memory(error, text);
 }
 
 // ---- inside --------------------------------------------------------------------------------
@@ -48,22 +45,16 @@ typedef struct search {
 static cp_status add_output(cp_input_file *file, size_t line, const char *element,
                             const char *attribute, const char *name, cp_error *error)
 {
-    cp_input_output *more = realloc(file->outputs, (file->output_count + 1) * sizeof *more);
-    if (more == NULL)
+    cp_input_output *output = cp_array_add(file->outputs, file->output_count);
+    if (output == NULL)
         return cp_fail_memory(error, name);
-    file->outputs = more;
     char *what = malloc(strlen(element) + strlen(attribute) + sizeof "< >");
     if (what != NULL && element[0] != '\0')
         strcat(strcat(strcat(strcat(strcpy(what, "<"), element), " "), attribute), ">");
     else if (what != NULL)
         strcpy(what, attribute);
-    more[file->output_count] = (cp_input_output){.line = line, .what = what, .name = strdup(name)};
-    if (what == NULL || more[file->output_count++].name == NULL) {
-        if (what == NULL)
-            free(more[file->output_count].name);
-        return cp_fail_memory(error, name);
-    }
-    return CP_OK;
+    *output = (cp_input_output){.line = line, .what = what, .name = strdup(name)};
+    return what != NULL && output->name != NULL ? CP_OK : cp_fail_memory(error, name);
 }
 
 // Whether a text ends in a word: "x.file" in "file", "profile" not.
@@ -233,7 +224,8 @@ cp_status cp_input_file_read(const char *path, const cp_input_search *wanted, cp
     if (status != CP_OK)
         return status;
     if (is_compressed(content, size)) {
-        cp_hash_bytes(content, size, file->hash);
+        if (wanted->hash)
+            cp_hash_bytes(content, size, file->hash);
         status = inflate_file(path, &plain, &plain_size, error);
         if (status == CP_OK)
             status = look_inside(&s, plain, plain_size, error);
@@ -244,7 +236,8 @@ cp_status cp_input_file_read(const char *path, const cp_input_search *wanted, cp
             remove_comments(content);
             size = strlen(content);
         }
-        cp_hash_bytes(content, size, file->hash);
+        if (wanted->hash)
+            cp_hash_bytes(content, size, file->hash);
         status = look_inside(&s, content, size, error);
     }
     free(plain);

@@ -22,7 +22,7 @@ typedef struct cp_input_output {
  * (gzip) are looked into as well. */
 typedef struct cp_input_file {
     const char *path;             /* borrowed */
-    char hash[CP_HASH_TEXT_SIZE]; /* SHA-256; of XML text without its comments */
+    char hash[CP_HASH_TEXT_SIZE]; /* SHA-256; of XML text without its comments; if looked for */
     char **includes;              /* names of files it includes, as written */
     size_t include_count;
     char **values; /* of the parameters with the key looked for */
@@ -38,6 +38,7 @@ typedef struct cp_input_file {
 /* What is looked for besides. */
 typedef struct cp_input_search {
     const char *key; /* values of <param key="..." value="..."/> with this key; NULL: none */
+    bool hash;       /* of the whole file */
     bool types;      /* vehicle types, and distributions of them */
     bool outputs;    /* what would make SUMO write or connect */
 } cp_input_search;

@@ -2,7 +2,7 @@
 #ifndef STUDY_OCCASIONS_H
 #define STUDY_OCCASIONS_H
 
-#include "study/study_file.h"
+#include "study/study.h"
 
 /* Tell by log which driver errors of the study cannot act for want of something in the network:
  * red_light without traffic lights, risky_overtaking without lanes that may overtake over the

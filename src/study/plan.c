@@ -6,6 +6,7 @@
 
 #include <inttypes.h>
 #include <jansson.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,6 +41,23 @@ static json_t *equipment_json(const cp_control_settings *settings)
     return shares;
 }
 
+// What a library is asked for with; numbers as numbers.
+static void add_library(json_t *entry, json_t *parameters, const cp_library *library)
+{
+    for (size_t k = 0; k < library->given_count; k++) {
+        const cp_library_parameter *given = &library->given[k];
+        json_object_set_new(parameters, given->name,
+                            isnan(given->number) ? json_string(given->text)
+                                                 : json_real(given->number));
+    }
+    json_object_set_new(entry, "library", json_string(library->written));
+    json_object_set_new(entry, "library_hash", json_string(library->hash));
+    if (library->data != NULL) {
+        json_object_set_new(entry, "data", json_string(library->data));
+        json_object_set_new(entry, "data_hash", json_string(library->data_hash));
+    }
+}
+
 // [{"model": name, "parameters": {...}}], defaults included.
 static json_t *controls_json(const cp_control_settings *settings, size_t count,
                              const char *name_key)
@@ -51,7 +69,10 @@ static json_t *controls_json(const cp_control_settings *settings, size_t count,
         for (size_t p = 0; p < type->parameter_count; p++)
             json_object_set_new(parameters, type->parameters[p].name,
                                 json_real(settings[k].parameter[p]));
-        json_t *entry = json_pack("{s:s, s:o}", name_key, type->name, "parameters", parameters);
+        json_t *entry = json_pack("{s:s, s:o}", name_key, cp_control_name(&settings[k]),
+                                  "parameters", parameters);
+        if (settings[k].library != NULL)
+            add_library(entry, parameters, settings[k].library);
         if (settings[k].share_count > 0)
             json_object_set_new(entry, "equipment", equipment_json(&settings[k]));
         json_array_append_new(list, entry);
@@ -75,12 +96,28 @@ static char *words_text(char *const *words, size_t count)
     return take_text(list);
 }
 
+static json_t *market_json(const cp_study *study)
+{
+    json_t *market = json_array();
+    for (size_t k = 0; k < study->market_count; k++)
+        json_array_append_new(market, json_pack("{s:s, s:s, s:f}", "type", study->market[k].type,
+                                                "class", study->market[k].vehicle_class, "share_1",
+                                                study->market[k].share_1));
+    return market;
+}
+
 static char *vehicles_text(const cp_study *study, const cp_vehicle_model_row *models)
 {
     json_t *types = json_object();
     for (size_t k = 1; k < study->vehicle_count; k++)
         json_object_set_new(types, study->vehicles[k].type, json_string(models[k].name));
-    return take_text(json_pack("{s:s?, s:o}", "default", models[0].name, "types", types));
+    json_t *vehicles = json_pack("{s:s?, s:o}", "default", models[0].name, "types", types);
+    // Only where there is one: what was run without stays done.
+    if (study->has_fleet) {
+        json_object_set_new(vehicles, "fleet", json_string("default"));
+        json_object_set_new(vehicles, "market", market_json(study));
+    }
+    return take_text(vehicles);
 }
 
 // ---- rows ----------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 #define STUDY_PLAN_H
 
 #include "store/plan_rows.h"
-#include "study/study_file.h"
+#include "study/study.h"
 
 /* Every replication of a study: scenarios x variants x seeds, each with its row id and the hash of
  * everything its outcome depends on; and one background run for every way to start SUMO. */

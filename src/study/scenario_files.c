@@ -34,16 +34,16 @@ cp_status cp_scenario_files_json(const cp_scenario_inputs *inputs, char **json, 
 {
     const char *path = inputs->sumocfg_path;
     json_t *files = json_object();
-    const cp_input_search nothing = {0};
+    const cp_input_search hashes = {.hash = true};
     cp_input_file own = {0};
     const char *slash = strrchr(path, '/');
     cp_status status = files != NULL ? CP_OK : cp_fail_memory(error, path);
     if (status == CP_OK)
-        status = cp_input_file_read(path, &nothing, &own, error);
+        status = cp_input_file_read(path, &hashes, &own, error);
     if (status == CP_OK)
         status = add_hash(&own, slash != NULL ? slash + 1 : path, files, error);
     if (status == CP_OK)
-        status = walk_inputs(inputs, &nothing, add_hash, files, error);
+        status = walk_inputs(inputs, &hashes, add_hash, files, error);
     if (status == CP_OK) {
         *json = json_dumps(files, JSON_SORT_KEYS | JSON_COMPACT);
         if (*json == NULL)

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/scenario_outputs.h"
 
+#include "core/array.h"
 #include "core/file.h"
 #include "core/output_files.h"
 #include "study/scenario_walk.h"
+#include "study/sumo_list.h"
 
 #include <limits.h>
 #include <stdbool.h>
@@ -75,11 +77,9 @@ static cp_status add(search *s, const char *place, const char *name, const char 
                      cp_error *error)
 {
     cp_scenario_outputs *found = s->found;
-    cp_scenario_output *more = realloc(found->output, (found->count + 1) * sizeof *more);
-    if (more == NULL)
+    cp_scenario_output *output = cp_array_add(found->output, found->count);
+    if (output == NULL)
         return cp_fail_memory(error, place);
-    found->output = more;
-    cp_scenario_output *output = &more[found->count++];
     *output = (cp_scenario_output){.place = strdup(place), .name = strdup(name), .why = why};
     return output->place != NULL && output->name != NULL ? CP_OK : cp_fail_memory(error, place);
 }
@@ -93,7 +93,7 @@ static cp_status add_name(search *s, const char *place, const char *name, const 
     char *decoded = strdup(name);
     cp_status status = decoded != NULL ? CP_OK : cp_fail_memory(error, place);
     if (status == CP_OK)
-        cp_scenario_decode(decoded);
+        cp_sumo_name_decode(decoded);
     for (int k = 0; status == CP_OK && k < 2 && why == NULL; k++) {
         const char *form = k == 0 ? name : decoded;
         if (is_nowhere(form))
@@ -113,18 +113,11 @@ static cp_status add_name(search *s, const char *place, const char *name, const 
 static cp_status add_names(search *s, const char *place, const char *names, const char *base,
                            cp_error *error)
 {
-    char *list = cp_scenario_with_environment(names), *rest = NULL;
-    cp_status status = list != NULL ? CP_OK : cp_fail_memory(error, place);
-    for (char *name = list != NULL ? strtok_r(list, ",", &rest) : NULL;
-         name != NULL && status == CP_OK; name = strtok_r(NULL, ",", &rest)) {
-        name += strspn(name, " \t\r\n");
-        size_t length = strlen(name);
-        while (length > 0 && strchr(" \t\r\n", name[length - 1]) != NULL)
-            name[--length] = '\0';
-        if (*name != '\0')
-            status = add_name(s, place, name, base, error);
-    }
-    free(list);
+    cp_sumo_list list;
+    cp_status status = cp_sumo_list_create(names, place, &list, error);
+    for (const char *name = NULL; status == CP_OK && (name = cp_sumo_list_next(&list)) != NULL;)
+        status = add_name(s, place, name, base, error);
+    cp_sumo_list_destroy(&list);
     return status;
 }
 

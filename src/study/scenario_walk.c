@@ -2,67 +2,12 @@
 #include "study/scenario_walk.h"
 
 #include "core/file.h"
-#include "core/memory_stream.h"
+#include "study/sumo_list.h"
 
-#include <ctype.h>
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-// ---- names ---------------------------------------------------------------------------------
-
-// Value of the digits behind a '%', or -1.
-static int hex_of(const char *two)
-{
-    if (!isxdigit((unsigned char)two[0]) || !isxdigit((unsigned char)two[1]))
-        return -1;
-    const char digits[] = {two[0], two[1], '\0'};
-    return (int)strtol(digits, NULL, 16);
-}
-
-// %20 and the like in place, as SUMO takes them in names of a .sumocfg.
-void cp_scenario_decode(char *name)
-{
-    char *to = name;
-    for (const char *from = name; *from != '\0'; to++) {
-        int code = *from == '%' ? hex_of(from + 1) : -1;
-        *to = *from;
-        if (code >= 0)
-            *to = (char)code;
-        from += code >= 0 ? 3 : 1;
-    }
-    *to = '\0';
-}
-
-// Text with every ${NAME} that the environment has put in; NULL when memory is gone.
-char *cp_scenario_with_environment(const char *text)
-{
-    char *whole = NULL;
-    size_t size = 0;
-    FILE *out = cp_memory_stream(&whole, &size);
-    if (out == NULL)
-        return NULL;
-    bool lost = false;
-    while (*text != '\0') {
-        size_t length = strncmp(text, "${", 2) == 0 ? strcspn(text, "}") : 0;
-        bool is_name = length > 2 && text[length] == '}';
-        char *name = is_name ? strndup(text + 2, length - 2) : NULL;
-        lost |= is_name && name == NULL;
-        const char *value = name != NULL ? getenv(name) : NULL;
-        if (value != NULL)
-            fputs(value, out);
-        else
-            fputc(*text, out);
-        text += value != NULL ? length + 1 : 1;
-        free(name);
-    }
-    lost |= fclose(out) != 0;
-    if (!lost)
-        return whole;
-    free(whole);
-    return NULL;
-}
 
 // ---- the walk ------------------------------------------------------------------------------
 
@@ -106,14 +51,14 @@ static cp_status walk_file(walk *w, const char *path, const char *name, cp_error
     return status;
 }
 
-// One name of a list, blanks around it cut off.
+// One name of a list.
 static cp_status walk_name(walk *w, const cp_sumo_configuration *configuration,
                            const cp_sumo_setting *setting, char *name, cp_error *error)
 {
     static const char OPTIONS[] = "sumo_options: ";
     bool is_of_file = setting->line > 0;
     if (is_of_file)
-        cp_scenario_decode(name);
+        cp_sumo_name_decode(name);
     char *path = is_of_file ? cp_file_beside(configuration->path, name) : strdup(name);
     char *full_name = malloc(sizeof OPTIONS + strlen(name));
     cp_status status = CP_OK;
@@ -132,18 +77,11 @@ static cp_status walk_name(walk *w, const cp_sumo_configuration *configuration,
 static cp_status walk_list(walk *w, const cp_sumo_configuration *configuration,
                            const cp_sumo_setting *setting, cp_error *error)
 {
-    char *list = cp_scenario_with_environment(setting->value), *rest = NULL;
-    cp_status status = list != NULL ? CP_OK : cp_fail_memory(error, setting->name);
-    for (char *name = list != NULL ? strtok_r(list, ",", &rest) : NULL;
-         name != NULL && status == CP_OK; name = strtok_r(NULL, ",", &rest)) {
-        size_t length = strlen(name);
-        while (length > 0 && isspace((unsigned char)name[length - 1]))
-            name[--length] = '\0';
-        name += strspn(name, " \t\r\n");
-        if (*name != '\0')
-            status = walk_name(w, configuration, setting, name, error);
-    }
-    free(list);
+    cp_sumo_list list;
+    cp_status status = cp_sumo_list_create(setting->value, setting->name, &list, error);
+    for (char *name = NULL; status == CP_OK && (name = cp_sumo_list_next(&list)) != NULL;)
+        status = walk_name(w, configuration, setting, name, error);
+    cp_sumo_list_destroy(&list);
     return status;
 }
 

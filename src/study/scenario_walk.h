@@ -18,11 +18,4 @@ CP_MUST_CHECK cp_status cp_scenario_walk(const cp_sumo_configuration *configurat
                                          const cp_input_search *search, cp_scenario_visit *visit,
                                          void *context, cp_error *error);
 
-/* %20 and the like in place, as SUMO takes them in names of a .sumocfg. */
-void cp_scenario_decode(char *name);
-
-/* Text with every ${NAME} that the environment has put in; the caller frees; NULL when memory is
- * gone. */
-char *cp_scenario_with_environment(const char *text);
-
 #endif

@@ -2,12 +2,11 @@
 #include "study/study_file.h"
 
 #include "core/file.h"
-#include "core/yaml_file.h"
-#include "study/assessment_section.h"
 #include "study/control_section.h"
-#include "study/study_parts.h"
+#include "study/fleet_section.h"
+#include "study/library_section.h"
+#include "study/study_schema.h"
 #include "study/sumo_configuration.h"
-#include "study/sweep_section.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -18,193 +17,6 @@
 
 #define NAME_CHARACTERS_MAX 64
 #define KEY_PATH_SIZE 512
-
-static const char *const DESIGN_TEXT[] = {
-#define CP_STUDY_DESIGN_TEXT(name, text) [name] = text,
-    CP_STUDY_DESIGNS(CP_STUDY_DESIGN_TEXT)
-#undef CP_STUDY_DESIGN_TEXT
-};
-#define DESIGN_COUNT (sizeof DESIGN_TEXT / sizeof DESIGN_TEXT[0])
-
-const char *cp_study_design_text(cp_study_design design)
-{
-    return DESIGN_TEXT[design];
-}
-
-// ---- the file as libcyaml reads it: everything a string ------------------------------------
-
-typedef struct raw_share {
-    char *type;
-    char *penetration_1;
-} raw_share;
-
-typedef struct raw_control {
-    char *name;
-    raw_share *equipment;
-    unsigned equipment_count;
-} raw_control;
-
-typedef struct raw_counterfactual {
-    char *checkpoint_interval_s;
-    char *checkpoints;
-    char *time_series_s;
-    char *horizon_s;
-} raw_counterfactual;
-
-typedef struct raw_after_crash {
-    char *stay_s;
-} raw_after_crash;
-
-typedef struct raw_background {
-    char *duration_s;
-    char *seeds;
-} raw_background;
-
-typedef struct raw_scenario {
-    char *name;
-    char *sumocfg;
-    char **sumo_options;
-    unsigned sumo_options_count;
-    raw_control *driver_errors;
-    unsigned driver_errors_count;
-} raw_scenario;
-
-typedef struct raw_variant {
-    char *name;
-    raw_control *functions;
-    unsigned functions_count;
-} raw_variant;
-
-typedef struct raw_vehicle_type {
-    char *type;
-    char *model;
-} raw_vehicle_type;
-
-typedef struct raw_vehicles {
-    char *standard;
-    raw_vehicle_type *types;
-    unsigned types_count;
-} raw_vehicles;
-
-typedef struct raw_study {
-    char *study;
-    char *question;
-    char *design;
-    char *baseline;
-    char *seed;
-    char *replications;
-    char *duration_s;
-    char *warmup_s;
-    char *step_length_s;
-    char *history_s;
-    raw_after_crash *after_crash;
-    raw_background *background;
-    cp_assessment_section *assessment;
-    raw_scenario *scenarios;
-    unsigned scenarios_count;
-    raw_variant *variants;
-    unsigned variants_count;
-    raw_vehicles *vehicles;
-    raw_counterfactual *counterfactual;
-    cp_sweep_entry *sweep;
-    unsigned sweep_count;
-} raw_study;
-
-#define TEXT(key, structure, member)                                                               \
-    CYAML_FIELD_STRING_PTR(key, CYAML_FLAG_POINTER, structure, member, 1, CYAML_UNLIMITED)
-#define TEXT_OPTIONAL(key, structure, member)                                                      \
-    CYAML_FIELD_STRING_PTR(key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, structure, member, 1,    \
-                           CYAML_UNLIMITED)
-#define LIST(key, structure, member, entry)                                                        \
-    CYAML_FIELD_SEQUENCE(key, CYAML_FLAG_POINTER, structure, member, &entry, 1, CYAML_UNLIMITED)
-#define LIST_OPTIONAL(key, structure, member, entry)                                               \
-    CYAML_FIELD_SEQUENCE(key, CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, structure, member, &entry, \
-                         0, CYAML_UNLIMITED)
-
-// The free keys of parameters are read from the key paths (control_section.c).
-static const cyaml_schema_field_t DRIVER_ERROR_FIELDS[] = {
-    TEXT("model", raw_control, name), CYAML_FIELD_IGNORE("parameters", CYAML_FLAG_OPTIONAL),
-    CYAML_FIELD_END};
-static const cyaml_schema_value_t DRIVER_ERROR = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_control, DRIVER_ERROR_FIELDS)};
-
-static const cyaml_schema_field_t SHARE_FIELDS[] = {TEXT("type", raw_share, type),
-                                                    TEXT("penetration_1", raw_share, penetration_1),
-                                                    CYAML_FIELD_END};
-static const cyaml_schema_value_t SHARE = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_share, SHARE_FIELDS)};
-
-static const cyaml_schema_field_t FUNCTION_FIELDS[] = {
-    TEXT("function", raw_control, name), CYAML_FIELD_IGNORE("parameters", CYAML_FLAG_OPTIONAL),
-    LIST_OPTIONAL("equipment", raw_control, equipment, SHARE), CYAML_FIELD_END};
-static const cyaml_schema_value_t FUNCTION = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_control, FUNCTION_FIELDS)};
-
-static const cyaml_schema_value_t WORD = {
-    CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char *, 0, CYAML_UNLIMITED)};
-
-static const cyaml_schema_field_t SCENARIO_FIELDS[] = {
-    TEXT("name", raw_scenario, name), TEXT("sumocfg", raw_scenario, sumocfg),
-    LIST_OPTIONAL("sumo_options", raw_scenario, sumo_options, WORD),
-    LIST_OPTIONAL("driver_errors", raw_scenario, driver_errors, DRIVER_ERROR), CYAML_FIELD_END};
-static const cyaml_schema_value_t SCENARIO = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_scenario, SCENARIO_FIELDS)};
-
-static const cyaml_schema_field_t VARIANT_FIELDS[] = {
-    TEXT("name", raw_variant, name), LIST_OPTIONAL("functions", raw_variant, functions, FUNCTION),
-    CYAML_FIELD_END};
-static const cyaml_schema_value_t VARIANT = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_variant, VARIANT_FIELDS)};
-
-static const cyaml_schema_field_t VEHICLE_TYPE_FIELDS[] = {
-    TEXT("type", raw_vehicle_type, type), TEXT("model", raw_vehicle_type, model), CYAML_FIELD_END};
-static const cyaml_schema_value_t VEHICLE_TYPE = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, raw_vehicle_type, VEHICLE_TYPE_FIELDS)};
-
-static const cyaml_schema_field_t VEHICLES_FIELDS[] = {
-    TEXT_OPTIONAL("default", raw_vehicles, standard),
-    LIST_OPTIONAL("types", raw_vehicles, types, VEHICLE_TYPE), CYAML_FIELD_END};
-
-static const cyaml_schema_field_t COUNTERFACTUAL_FIELDS[] = {
-    TEXT_OPTIONAL("checkpoint_interval_s", raw_counterfactual, checkpoint_interval_s),
-    TEXT_OPTIONAL("checkpoints", raw_counterfactual, checkpoints),
-    TEXT_OPTIONAL("time_series_s", raw_counterfactual, time_series_s),
-    TEXT_OPTIONAL("horizon_s", raw_counterfactual, horizon_s), CYAML_FIELD_END};
-
-static const cyaml_schema_field_t AFTER_CRASH_FIELDS[] = {TEXT("stay_s", raw_after_crash, stay_s),
-                                                          CYAML_FIELD_END};
-
-static const cyaml_schema_field_t BACKGROUND_FIELDS[] = {
-    TEXT_OPTIONAL("duration_s", raw_background, duration_s),
-    TEXT_OPTIONAL("seeds", raw_background, seeds), CYAML_FIELD_END};
-
-static const cyaml_schema_field_t STUDY_FIELDS[] = {
-    TEXT("study", raw_study, study),
-    TEXT_OPTIONAL("question", raw_study, question),
-    TEXT("design", raw_study, design),
-    TEXT_OPTIONAL("baseline", raw_study, baseline),
-    TEXT("seed", raw_study, seed),
-    TEXT("replications", raw_study, replications),
-    TEXT("duration_s", raw_study, duration_s),
-    TEXT_OPTIONAL("warmup_s", raw_study, warmup_s),
-    TEXT_OPTIONAL("step_length_s", raw_study, step_length_s),
-    TEXT_OPTIONAL("history_s", raw_study, history_s),
-    CYAML_FIELD_MAPPING_PTR("after_crash", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
-                            after_crash, AFTER_CRASH_FIELDS),
-    CYAML_FIELD_MAPPING_PTR("background", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
-                            background, BACKGROUND_FIELDS),
-    CYAML_FIELD_MAPPING_PTR("assessment", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
-                            assessment, CP_ASSESSMENT_FIELDS),
-    LIST("scenarios", raw_study, scenarios, SCENARIO),
-    LIST("variants", raw_study, variants, VARIANT),
-    CYAML_FIELD_MAPPING_PTR("vehicles", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
-                            vehicles, VEHICLES_FIELDS),
-    CYAML_FIELD_MAPPING_PTR("counterfactual", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, raw_study,
-                            counterfactual, COUNTERFACTUAL_FIELDS),
-    LIST_OPTIONAL("sweep", raw_study, sweep, CP_SWEEP_ENTRY),
-    CYAML_FIELD_END};
-static const cyaml_schema_value_t STUDY = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, raw_study, STUDY_FIELDS)};
 
 // ---- checks --------------------------------------------------------------------------------
 
@@ -251,17 +63,13 @@ static cp_status take_whole(const cp_yaml_file *file, const char *key_path, cons
 static cp_status take_design(const cp_yaml_file *file, const char *text, cp_study_design *design,
                              cp_error *error)
 {
-    for (size_t k = 0; k < DESIGN_COUNT; k++) {
-        if (strcmp(text, DESIGN_TEXT[k]) == 0) {
-            *design = (cp_study_design)k;
-            return CP_OK;
-        }
-    }
+    if (cp_study_design_find(text, design))
+        return CP_OK;
     return cp_yaml_fail(file, error, "design",
                         "must be paired_seeds, independent or counterfactual, found '%s'", text);
 }
 
-static cp_status take_head(const cp_yaml_file *file, const raw_study *raw, cp_study *study,
+static cp_status take_head(const cp_yaml_file *file, const cp_raw_study *raw, cp_study *study,
                            cp_error *error)
 {
     uint64_t replications = 0;
@@ -306,7 +114,7 @@ static cp_status take_head(const cp_yaml_file *file, const raw_study *raw, cp_st
 }
 
 // As long as a replication unless told otherwise; a run that ends within its warm-up tells nothing.
-static cp_status take_background(const cp_yaml_file *file, const raw_background *raw,
+static cp_status take_background(const cp_yaml_file *file, const cp_raw_background *raw,
                                  cp_study *study, cp_error *error)
 {
     uint64_t seeds = study->replications < 3 ? study->replications : 3;
@@ -331,7 +139,7 @@ static cp_status take_background(const cp_yaml_file *file, const raw_background 
     return status;
 }
 
-static cp_status take_counterfactual(const cp_yaml_file *file, const raw_counterfactual *raw,
+static cp_status take_counterfactual(const cp_yaml_file *file, const cp_raw_counterfactual *raw,
                                      cp_study *study, cp_error *error)
 {
     cp_study_counterfactual *section = &study->counterfactual;
@@ -364,7 +172,7 @@ static cp_status take_counterfactual(const cp_yaml_file *file, const raw_counter
 
 // Penetration of a function by SUMO vehicle type.
 static cp_status take_equipment(const cp_yaml_file *file, const char *entry_path,
-                                const raw_control *raw, cp_control_settings *settings,
+                                const cp_raw_control *raw, cp_control_settings *settings,
                                 cp_error *error)
 {
     if (raw->equipment_count == 0)
@@ -393,8 +201,9 @@ static cp_status take_equipment(const cp_yaml_file *file, const char *entry_path
 }
 
 static cp_status take_controls(const cp_yaml_file *file, cp_control_kind kind,
-                               const char *list_path, const char *name_key, const raw_control *raw,
-                               size_t count, cp_control_settings **settings, size_t *settings_count,
+                               const char *list_path, const char *name_key,
+                               const cp_raw_control *raw, size_t count,
+                               cp_control_settings **settings, size_t *settings_count,
                                cp_error *error)
 {
     if (count == 0)
@@ -409,18 +218,23 @@ static cp_status take_controls(const cp_yaml_file *file, cp_control_kind kind,
                                                    &(*settings)[k], error);
         (*settings_count)++;
         if (status == CP_OK)
+            status = cp_library_section_read(file, path, raw[k].name, raw[k].library, raw[k].as,
+                                             raw[k].data, &(*settings)[k], error);
+        if (status == CP_OK)
             status = take_equipment(file, path, &raw[k], &(*settings)[k], error);
         if (status != CP_OK)
             return status;
         // Draws depend on the control's name: the same twice would act in lockstep.
         for (size_t other = 0; other < k; other++)
-            if ((*settings)[other].type == (*settings)[k].type)
-                return cp_yaml_fail(file, error, path, "repeats '%s'", raw[k].name);
+            if (strcmp(cp_control_name(&(*settings)[other]), cp_control_name(&(*settings)[k])) == 0)
+                return cp_yaml_fail(file, error, path, "repeats '%s'",
+                                    cp_control_name(&(*settings)[k]));
     }
     return CP_OK;
 }
 
-static cp_status take_words(const raw_scenario *raw, cp_study_scenario *scenario, cp_error *error)
+static cp_status take_words(const cp_raw_scenario *raw, cp_study_scenario *scenario,
+                            cp_error *error)
 {
     if (raw->sumo_options_count == 0)
         return CP_OK;
@@ -460,8 +274,8 @@ static cp_status check_options(const cp_yaml_file *file, const char *path,
     return status;
 }
 
-static cp_status take_scenario(const cp_yaml_file *file, const raw_scenario *raw, cp_study *study,
-                               size_t index, cp_error *error)
+static cp_status take_scenario(const cp_yaml_file *file, const cp_raw_scenario *raw,
+                               cp_study *study, size_t index, cp_error *error)
 {
     char path[KEY_PATH_SIZE];
     cp_study_scenario *scenario = &study->scenarios[index];
@@ -497,7 +311,7 @@ static cp_status take_scenario(const cp_yaml_file *file, const raw_scenario *raw
     return status;
 }
 
-static cp_status take_scenarios(const cp_yaml_file *file, const raw_study *raw, cp_study *study,
+static cp_status take_scenarios(const cp_yaml_file *file, const cp_raw_study *raw, cp_study *study,
                                 cp_error *error)
 {
     study->scenarios = calloc(raw->scenarios_count, sizeof *study->scenarios);
@@ -510,7 +324,7 @@ static cp_status take_scenarios(const cp_yaml_file *file, const raw_study *raw, 
     return status;
 }
 
-static cp_status take_variant(const cp_yaml_file *file, const raw_variant *raw, cp_study *study,
+static cp_status take_variant(const cp_yaml_file *file, const cp_raw_variant *raw, cp_study *study,
                               size_t index, cp_error *error)
 {
     char path[KEY_PATH_SIZE];
@@ -533,7 +347,7 @@ static cp_status take_variant(const cp_yaml_file *file, const raw_variant *raw, 
     return status;
 }
 
-static cp_status take_variants(const cp_yaml_file *file, const raw_study *raw, cp_study *study,
+static cp_status take_variants(const cp_yaml_file *file, const cp_raw_study *raw, cp_study *study,
                                cp_error *error)
 {
     study->variants = calloc(raw->variants_count, sizeof *study->variants);
@@ -598,17 +412,21 @@ static cp_status take_model(const cp_yaml_file *file, const char *key_path, cons
     return vehicle->model_name != NULL ? CP_OK : cp_fail_memory(error, key_path);
 }
 
-static cp_status take_vehicles(const cp_yaml_file *file, const raw_vehicles *given, cp_study *study,
-                               cp_error *error)
+static cp_status take_vehicles(const cp_yaml_file *file, const cp_raw_vehicles *given,
+                               cp_study *study, cp_error *error)
 {
-    const raw_vehicles nothing = {0};
-    const raw_vehicles *raw = given != NULL ? given : &nothing;
+    const cp_raw_vehicles nothing = {0};
+    const cp_raw_vehicles *raw = given != NULL ? given : &nothing;
     study->vehicles = calloc((size_t)raw->types_count + 1, sizeof *study->vehicles);
     if (study->vehicles == NULL)
         return cp_fail_memory(error, "vehicles");
     study->vehicle_count = (size_t)raw->types_count + 1;
-    cp_status status = CP_OK;
-    if (raw->standard != NULL)
+    if (raw->standard != NULL && raw->fleet != NULL)
+        return cp_yaml_fail(file, error, "vehicles.fleet",
+                            "does not go with vehicles.default: the cars of a fleet are drawn");
+    cp_status status =
+        cp_fleet_section_take(file, raw->fleet, raw->market, raw->market_count, study, error);
+    if (status == CP_OK && raw->standard != NULL)
         status = take_model(file, "vehicles.default", raw->standard, &study->vehicles[0], error);
     for (size_t k = 0; status == CP_OK && k < raw->types_count; k++) {
         char path[KEY_PATH_SIZE];
@@ -625,7 +443,7 @@ static cp_status take_vehicles(const cp_yaml_file *file, const raw_vehicles *giv
     return status;
 }
 
-// ---- public --------------------------------------------------------------------------------
+// ---- the whole -----------------------------------------------------------------------------
 
 cp_status cp_study_load(const char *path, cp_study *study, cp_error *error)
 {
@@ -636,10 +454,10 @@ cp_status cp_study_load(const char *path, cp_study *study, cp_error *error)
     if (status == CP_OK)
         status = cp_file_read(path, &study->content, &size, error);
     if (status == CP_OK)
-        status = cp_yaml_load(path, &STUDY, &file, error);
+        status = cp_yaml_parse(path, study->content, size, &CP_RAW_STUDY, &file, error);
     if (status != CP_OK)
         goto done;
-    const raw_study *raw = (const raw_study *)file.data;
+    const cp_raw_study *raw = (const cp_raw_study *)file.data;
     status = take_head(&file, raw, study, error);
     if (status == CP_OK)
         status = take_background(&file, raw->background, study, error);
@@ -663,77 +481,4 @@ done:
     if (status != CP_OK)
         cp_study_destroy(study);
     return status;
-}
-
-void cp_study_destroy(cp_study *study)
-{
-    for (size_t k = 0; k < study->scenario_count; k++)
-        cp_study_scenario_destroy(&study->scenarios[k]);
-    for (size_t k = 0; k < study->variant_count; k++)
-        cp_study_variant_destroy(&study->variants[k]);
-    for (size_t k = 0; k < study->vehicle_count; k++) {
-        free(study->vehicles[k].type);
-        free(study->vehicles[k].model_path);
-        free(study->vehicles[k].model_name);
-    }
-    free(study->scenarios);
-    free(study->variants);
-    free(study->vehicles);
-    free(study->question);
-    free(study->name);
-    free(study->content);
-    free(study->path);
-    *study = (cp_study){0};
-}
-
-size_t cp_study_baseline(const cp_study *study)
-{
-    size_t k = 0;
-    while (k + 1 < study->variant_count && !study->variants[k].is_baseline)
-        k++;
-    return k;
-}
-
-bool cp_study_scenarios_start_alike(const cp_study_scenario *one, const cp_study_scenario *other)
-{
-    bool alike = strcmp(one->sumocfg_path, other->sumocfg_path) == 0 &&
-                 one->sumo_option_count == other->sumo_option_count;
-    for (size_t k = 0; alike && k < one->sumo_option_count; k++)
-        alike = strcmp(one->sumo_options[k], other->sumo_options[k]) == 0;
-    return alike;
-}
-
-cp_scenario_inputs cp_study_scenario_inputs(const cp_study_scenario *scenario)
-{
-    return (cp_scenario_inputs){.sumocfg_path = scenario->sumocfg_path,
-                                .words = scenario->sumo_options,
-                                .word_count = scenario->sumo_option_count};
-}
-
-cp_status cp_study_tell_options(const cp_study *study, cp_error *error)
-{
-    cp_status status = CP_OK;
-    for (size_t k = 0; status == CP_OK && k < study->scenario_count; k++) {
-        const cp_study_scenario *scenario = &study->scenarios[k];
-        cp_sumo_configuration configuration = {0};
-        size_t first = 0;
-        while (!cp_study_scenarios_start_alike(&study->scenarios[first], scenario))
-            first++;
-        if (first < k)
-            continue;
-        status = cp_sumo_configuration_read(scenario->sumocfg_path, scenario->sumo_options,
-                                            scenario->sumo_option_count, &configuration, error);
-        if (status == CP_OK)
-            cp_sumo_configuration_tell(&configuration);
-        cp_sumo_configuration_destroy(&configuration);
-    }
-    return status;
-}
-
-const cp_study_scenario *cp_study_find_scenario(const cp_study *study, const char *name)
-{
-    for (size_t k = 0; k < study->scenario_count; k++)
-        if (strcmp(study->scenarios[k].name, name) == 0)
-            return &study->scenarios[k];
-    return NULL;
 }

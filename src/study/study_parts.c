@@ -33,8 +33,11 @@ static bool copy_controls(const cp_control_settings *from, size_t count, cp_cont
     *to = calloc(count, sizeof **to);
     for (size_t k = 0; *to != NULL && k < count; k++) {
         (*to)[k] = from[k];
+        (*to)[k].library = NULL;
         (*copied)++;
         if (!copy_shares(&from[k], &(*to)[k]))
+            return false;
+        if (from[k].library != NULL && !((*to)[k].library = cp_library_copy(from[k].library)))
             return false;
     }
     return *to != NULL;
@@ -46,6 +49,7 @@ static void destroy_controls(cp_control_settings *settings, size_t count)
         for (size_t share = 0; share < settings[k].share_count; share++)
             free(settings[k].shares[share].type);
         free(settings[k].shares);
+        cp_library_destroy(settings[k].library);
     }
     free(settings);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sumo_configuration.h"
 
+#include "core/array.h"
 #include "core/log.h"
 #include "core/xml_file.h"
 
@@ -34,21 +35,18 @@ static char *trimmed(const char *text, size_t size)
 static cp_sumo_setting *add(cp_sumo_configuration *configuration, const char *name, size_t size,
                             const char *value)
 {
-    cp_sumo_setting *more =
-        realloc(configuration->setting, (configuration->count + 1) * sizeof *more);
-    if (more == NULL)
+    cp_sumo_setting *setting = cp_array_add(configuration->setting, configuration->count);
+    if (setting == NULL)
         return NULL;
-    configuration->setting = more;
-    cp_sumo_setting *setting = &more[configuration->count];
     *setting =
         (cp_sumo_setting){.name = strndup(name, size), .value = trimmed(value, strlen(value))};
     if (setting->name == NULL || setting->value == NULL) {
         free(setting->name);
         free(setting->value);
+        configuration->count--;
         return NULL;
     }
     setting->option = cp_sumo_option_find(setting->name);
-    configuration->count++;
     return setting;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep_section.h"
 
+#include "core/array.h"
 #include "study/study_parts.h"
 
 #include <math.h>
@@ -46,6 +47,7 @@ typedef struct axis {
     size_t list_count;
     size_t control;                   /* which of them, */
     const cp_control_parameter *what; /* and which parameter of it; NULL: */
+    size_t given;                     /* 1 + which parameter given to its library; 0: */
     size_t share;                     /* 1 + which entry of its equipment; 0: */
     char name[96];                    /* an option of SUMO, without the dashes; "equipment.TYPE" */
     double *values;
@@ -65,7 +67,8 @@ static const char *short_name(const axis *a)
 
 static const char *group_name(const axis *a)
 {
-    return a->what != NULL || a->share > 0 ? a->list[a->control].type->name : "sumo_options";
+    bool is_control = a->what != NULL || a->share > 0 || a->given > 0;
+    return is_control ? cp_control_name(&a->list[a->control]) : "sumo_options";
 }
 
 static void append(char list[LIST_SIZE], const char *name)
@@ -112,12 +115,30 @@ static void look_into_parameters(axis *a, size_t c, const char *name, char had[L
     const cp_control_type *type = a->list[c].type;
     for (size_t p = 0; p < type->parameter_count; p++) {
         char full[128];
-        snprintf(full, sizeof full, "%s.%s", type->name, type->parameters[p].name);
+        snprintf(full, sizeof full, "%s.%s", cp_control_name(&a->list[c]),
+                 type->parameters[p].name);
         append(had, full);
         if (strcmp(type->parameters[p].name, name) != 0)
             continue;
         a->control = c;
         a->what = &type->parameters[p];
+        ++*found;
+    }
+}
+
+// The same for what the study gives to its library.
+static void look_into_given(axis *a, size_t c, const char *name, char had[LIST_SIZE], size_t *found)
+{
+    const cp_library *library = a->list[c].library;
+    for (size_t k = 0; library != NULL && k < library->given_count; k++) {
+        char full[128];
+        snprintf(full, sizeof full, "%s.%s", library->name, library->given[k].name);
+        append(had, full);
+        if (strcmp(library->given[k].name, name) != 0)
+            continue;
+        a->control = c;
+        a->given = k + 1;
+        snprintf(a->name, sizeof a->name, "%s", name);
         ++*found;
     }
 }
@@ -129,7 +150,7 @@ static void look_into_equipment(axis *a, size_t c, const char *name, char had[LI
     for (size_t k = 0; k < a->list[c].share_count; k++) {
         char share[96], full[160];
         int length = snprintf(share, sizeof share, "equipment.%s", a->list[c].shares[k].type);
-        snprintf(full, sizeof full, "%s.%s", a->list[c].type->name, share);
+        snprintf(full, sizeof full, "%s.%s", cp_control_name(&a->list[c]), share);
         append(had, full);
         if (strcmp(share, name) != 0 || length >= (int)sizeof share)
             continue;
@@ -146,10 +167,11 @@ static cp_status find_parameter(axis *a, const char *text, cp_error *error)
     char had[LIST_SIZE] = "";
     size_t found = 0;
     for (size_t c = 0; c < a->list_count; c++) {
-        const char *control = a->list[c].type->name;
+        const char *control = cp_control_name(&a->list[c]);
         size_t length = strlen(control);
         bool named = strncmp(text, control, length) == 0 && text[length] == '.';
         look_into_parameters(a, c, named ? text + length + 1 : text, had, &found);
+        look_into_given(a, c, named ? text + length + 1 : text, had, &found);
         look_into_equipment(a, c, named ? text + length + 1 : text, had, &found);
     }
     if (found == 1 && strspn(short_name(a), NAME_CHARACTERS) != strlen(short_name(a)))
@@ -161,7 +183,7 @@ static cp_status find_parameter(axis *a, const char *text, cp_error *error)
     if (found > 1)
         return cp_yaml_fail(a->file, error, a->key,
                             "is a parameter of several; write %s.%s for the one meant",
-                            a->list[0].type->name, text);
+                            cp_control_name(&a->list[0]), text);
     return cp_yaml_fail(a->file, error, a->key, "ends in no parameter, found '%s'; there %s %s",
                         text, had[0] != '\0' ? "are" : "is", had[0] != '\0' ? had : "none");
 }
@@ -391,17 +413,13 @@ static cp_status rename_point(const sweep *s, size_t which, double value, point 
 static cp_status note_value(const axis *a, double value, point *p, cp_error *error)
 {
     char parameter[KEY_PATH_SIZE];
-    cp_study_swept *swept = realloc(*p->swept, (*p->swept_count + 1) * sizeof *swept);
+    cp_study_swept *swept = cp_array_add(*p->swept, *p->swept_count);
     if (swept == NULL)
         return cp_fail_memory(error, "sweep");
-    *p->swept = swept;
     snprintf(parameter, sizeof parameter, "%s.%s.%s.%s", a->of_scenario ? "scenarios" : "variants",
              p->base, group_name(a), short_name(a));
-    swept[*p->swept_count] = (cp_study_swept){strdup(parameter), value};
-    if (swept[*p->swept_count].parameter == NULL)
-        return cp_fail_memory(error, "sweep");
-    ++*p->swept_count;
-    return CP_OK;
+    *swept = (cp_study_swept){strdup(parameter), value};
+    return swept->parameter != NULL ? CP_OK : cp_fail_memory(error, "sweep");
 }
 
 // Put "--option value" in place of what the scenario says of the option, or behind all options.
@@ -435,6 +453,19 @@ static cp_status set_option(const axis *a, double value, cp_study_scenario *scen
                                                           : cp_fail_memory(error, "sumo_options");
 }
 
+static cp_status give_value(cp_library_parameter *given, double value, cp_error *error)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.12g", value);
+    char *copy = strdup(text);
+    if (copy == NULL)
+        return cp_fail_memory(error, "sweep");
+    free(given->text);
+    given->text = copy;
+    given->number = value;
+    return CP_OK;
+}
+
 // Apply the values of a point; scenario is NULL for a variant.
 static cp_status apply(const sweep *s, bool of_scenario, size_t owner, size_t at, point *p,
                        cp_study_scenario *scenario, cp_error *error)
@@ -451,9 +482,11 @@ static cp_status apply(const sweep *s, bool of_scenario, size_t owner, size_t at
         if (status != CP_OK)
             break;
         cp_control_settings *control =
-            a->what != NULL || a->share > 0 ? &p->controls[a->control] : NULL;
+            a->what != NULL || a->share > 0 || a->given > 0 ? &p->controls[a->control] : NULL;
         if (a->what != NULL)
             control->parameter[a->what - control->type->parameters] = value;
+        else if (a->given > 0)
+            status = give_value(&control->library->given[a->given - 1], value, error);
         else if (a->share > 0)
             control->shares[a->share - 1].penetration_1 = value;
         else

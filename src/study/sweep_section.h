@@ -3,7 +3,7 @@
 #define STUDY_SWEEP_SECTION_H
 
 #include "core/yaml_file.h"
-#include "study/study_file.h"
+#include "study/study.h"
 
 /* Section sweep of a study file: parameters that take several values.
  *

@@ -48,24 +48,32 @@ static void list_types(json_t *types, char *text, size_t size)
         snprintf(text, size, "none");
 }
 
+static cp_status check_type(const cp_study *study, json_t *types, const char *type, size_t line,
+                            const char *list, size_t index, cp_error *error)
+{
+    char known[400];
+    if (json_object_get(types, type) != NULL)
+        return CP_OK;
+    list_types(types, known, sizeof known);
+    return cp_fail(error, CP_BAD_INPUT,
+                   "%s:%zu: vehicles.%s[%zu].type must be a vehicle type of a scenario, found "
+                   "'%s'; there are %s",
+                   study->path, line, list, index, type, known);
+}
+
 cp_status cp_study_check_types(const cp_study *study, cp_error *error)
 {
     // The first is the default.
-    if (study->vehicle_count < 2)
+    if (study->vehicle_count < 2 && study->market_count == 0)
         return CP_OK;
     json_t *types = json_object();
     cp_status status = gather_types(study, types, error);
-    for (size_t k = 1; status == CP_OK && k < study->vehicle_count; k++) {
-        const cp_study_vehicle *mapped = &study->vehicles[k];
-        char known[400];
-        if (json_object_get(types, mapped->type) != NULL)
-            continue;
-        list_types(types, known, sizeof known);
-        status = cp_fail(error, CP_BAD_INPUT,
-                         "%s:%zu: vehicles.types[%zu].type must be a vehicle type of a scenario, "
-                         "found '%s'; there are %s",
-                         study->path, mapped->line, k - 1, mapped->type, known);
-    }
+    for (size_t k = 1; status == CP_OK && k < study->vehicle_count; k++)
+        status = check_type(study, types, study->vehicles[k].type, study->vehicles[k].line, "types",
+                            k - 1, error);
+    for (size_t k = 0; status == CP_OK && k < study->market_count; k++)
+        status = check_type(study, types, study->market[k].type, study->market[k].line, "market", k,
+                            error);
     json_decref(types);
     return status;
 }

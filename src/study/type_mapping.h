@@ -2,7 +2,7 @@
 #ifndef STUDY_TYPE_MAPPING_H
 #define STUDY_TYPE_MAPPING_H
 
-#include "study/study_file.h"
+#include "study/study.h"
 
 /* Whether every vehicle type that the study maps to a model exists in some scenario, or is one that
  * SUMO has by itself: a mapping of any other does nothing, and its cars crash as something else.

@@ -38,9 +38,10 @@ typedef struct cp_lane {
     const uint32_t *from; /* lanes that it follows right behind; worked out */
     size_t from_count;
     double width_m;
-    uint32_t edge;     /* number of its edge */
-    uint32_t straight; /* index of the link that turns least; meaningless without links */
-    bool is_inside;    /* of a junction */
+    uint32_t edge;          /* number of its edge */
+    uint32_t straight;      /* index of the link that turns least; meaningless without links */
+    bool is_inside;         /* of a junction */
+    double speed_limit_m_s; /* 0: not known */
 } cp_lane;
 
 typedef struct cp_lane_map cp_lane_map;

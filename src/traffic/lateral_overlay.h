@@ -2,7 +2,8 @@
 #ifndef TRAFFIC_LATERAL_OVERLAY_H
 #define TRAFFIC_LATERAL_OVERLAY_H
 
-#include "traffic/sumo_bridge.h"
+#include "core/error.h"
+#include "traffic/vehicle_state.h"
 
 /* Vehicles that are not where SUMO drives them: an offset across SUMO's path that changes as a car
  * drives along with its heading turned off the path. SUMO carries the car along and knows nothing

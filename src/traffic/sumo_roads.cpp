@@ -138,12 +138,11 @@ void read_lane(const cp_sumo_numbers *numbers, const std::string &id, Lanes *all
                          Lane::getWidth(id),
                          numbers->edge(all->edges[number].c_str()),
                          0,
-                         is_inside};
+                         is_inside,
+                         Lane::getMaxSpeed(id)};
 }
 
 } // namespace
-
-extern "C" {
 
 cp_status cp_sumo_roads_read(const cp_sumo_numbers *numbers, cp_road_network **roads,
                              cp_lane_map **lanes, cp_error *error)
@@ -170,5 +169,3 @@ bool cp_sumo_lanes_pass_over(const char *one, const char *other)
 {
     return pass_over(one, other);
 }
-
-} // extern "C"

@@ -4,6 +4,7 @@
 #include "core/geometry.h"
 #include "core/recent_rows.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -337,7 +338,7 @@ const uint32_t *cp_traffic_departed(const cp_traffic *traffic, size_t *count)
 cp_status cp_traffic_next_light(const cp_traffic *traffic, uint32_t vehicle, cp_next_light *light,
                                 cp_error *error)
 {
-    *light = (cp_next_light){.distance_m = INFINITY, .number = SUMO_BRIDGE_NONE};
+    *light = (cp_next_light){.distance_m = INFINITY, .number = CP_NO_NUMBER};
     if (traffic->source->next_light == NULL)
         return CP_OK;
     return traffic->source->next_light(vehicle, light, error);
@@ -374,7 +375,43 @@ const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle)
 const char *cp_traffic_vehicle_type(const cp_traffic *traffic, uint32_t vehicle)
 {
     const cp_vehicle_motion *motion = cp_traffic_motion_of(traffic, vehicle);
-    return motion && traffic->source->type_id ? traffic->source->type_id(motion->after.type) : "";
+    return motion ? cp_traffic_type_id(traffic, motion->after.type) : "";
+}
+
+const char *cp_traffic_type_id(const cp_traffic *traffic, uint32_t type)
+{
+    return traffic->source->type_id ? traffic->source->type_id(type) : "";
+}
+
+const char *cp_traffic_lane_id(const cp_traffic *traffic, uint32_t lane)
+{
+    return traffic->source->lane_id ? traffic->source->lane_id(lane) : "";
+}
+
+cp_status cp_traffic_type(const cp_traffic *traffic, const char *type_id, cp_sumo_type *type,
+                          cp_error *error)
+{
+    *type = (cp_sumo_type){.mass_kg = NAN};
+    return traffic->source->type ? traffic->source->type(type_id, type, error) : CP_OK;
+}
+
+cp_status cp_traffic_collisions(const cp_traffic *traffic, const cp_sumo_collision **collisions,
+                                size_t *count, cp_error *error)
+{
+    *collisions = NULL;
+    *count = 0;
+    return traffic->source->collisions ? traffic->source->collisions(collisions, count, error)
+                                       : CP_OK;
+}
+
+const char *cp_traffic_version(const cp_traffic *traffic)
+{
+    return traffic->source->version ? traffic->source->version() : "";
+}
+
+const char *cp_traffic_command_line(const cp_traffic *traffic)
+{
+    return traffic->source->command_line ? traffic->source->command_line() : "";
 }
 
 cp_status cp_traffic_lane_map(const cp_traffic *traffic, const cp_lane_map **map, cp_error *error)

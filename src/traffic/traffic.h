@@ -2,8 +2,9 @@
 #ifndef TRAFFIC_TRAFFIC_H
 #define TRAFFIC_TRAFFIC_H
 
+#include "traffic/lane_map.h"
 #include "traffic/lateral_overlay.h"
-#include "traffic/sumo_bridge.h"
+#include "traffic/vehicle_state.h"
 
 /* The step loop around the bridge: this step's and last step's states matched per vehicle,
  * exposure, removal of crashed cars or their standing on the road. One a process. */
@@ -27,6 +28,13 @@ typedef struct cp_traffic_source {
     int (*expected_vehicles)(void);
     const char *(*vehicle_id)(uint32_t vehicle);
     const char *(*type_id)(uint32_t type); /* may be NULL: types have no names */
+    const char *(*lane_id)(uint32_t lane); /* may be NULL: lanes have none */
+    /* May be NULL: nothing is known of types but the sizes in the states. */
+    cp_status (*type)(const char *type_id, cp_sumo_type *type, cp_error *error);
+    /* May be NULL: the source finds no collisions itself. */
+    cp_status (*collisions)(const cp_sumo_collision **collisions, size_t *count, cp_error *error);
+    const char *(*version)(void);      /* may be NULL: "" */
+    const char *(*command_line)(void); /* may be NULL: "" */
     cp_status (*remove)(uint32_t vehicle, cp_error *error);
     cp_status (*set_speed)(uint32_t vehicle, double speed_m_s, cp_error *error);
     cp_status (*set_speed_mode)(uint32_t vehicle, int mode, cp_error *error);
@@ -104,6 +112,20 @@ CP_MUST_CHECK cp_status cp_traffic_road_relation(const cp_traffic *traffic,
 const char *cp_traffic_vehicle_id(const cp_traffic *traffic, uint32_t vehicle);
 /* SUMO vehicle type of a vehicle on the road; "" of any other. */
 const char *cp_traffic_vehicle_type(const cp_traffic *traffic, uint32_t vehicle);
+/* Names by the numbers in states; "" where there are none. */
+const char *cp_traffic_type_id(const cp_traffic *traffic, uint32_t type);
+const char *cp_traffic_lane_id(const cp_traffic *traffic, uint32_t lane);
+/* What a vehicle type is (sumo_bridge.h); sizes 0, mass NAN and no class where that is not known.
+ */
+CP_MUST_CHECK cp_status cp_traffic_type(const cp_traffic *traffic, const char *type_id,
+                                        cp_sumo_type *type, cp_error *error);
+/* Collisions of the last step as SUMO itself reports them; valid until the next step. */
+CP_MUST_CHECK cp_status cp_traffic_collisions(const cp_traffic *traffic,
+                                              const cp_sumo_collision **collisions, size_t *count,
+                                              cp_error *error);
+/* Of the simulation behind it: version text, and the complete command line it was started with. */
+const char *cp_traffic_version(const cp_traffic *traffic);
+const char *cp_traffic_command_line(const cp_traffic *traffic);
 /* Where the lanes run and which lanes a vehicle takes next (sumo_bridge.h); *map is
  * NULL and *count 0 where that is not known. */
 CP_MUST_CHECK cp_status cp_traffic_lane_map(const cp_traffic *traffic, const cp_lane_map **map,

@@ -2,6 +2,7 @@
 #include "traffic/traffic.h"
 
 #include "core/link_pages.h"
+#include "traffic/sumo_bridge.h"
 
 static const cp_traffic_source SUMO = {
     .step = sumo_bridge_step,
@@ -10,6 +11,11 @@ static const cp_traffic_source SUMO = {
     .expected_vehicles = sumo_bridge_expected_vehicles,
     .vehicle_id = sumo_bridge_vehicle_id,
     .type_id = sumo_bridge_type_id,
+    .lane_id = sumo_bridge_lane_id,
+    .type = sumo_bridge_type,
+    .collisions = sumo_bridge_collisions,
+    .version = sumo_bridge_version,
+    .command_line = sumo_bridge_command_line,
     .remove = sumo_bridge_remove,
     .set_speed = sumo_bridge_set_speed,
     .set_speed_mode = sumo_bridge_set_speed_mode,

@@ -44,7 +44,7 @@ least = int(os.environ.get("AGREEMENT_LEAST", "0"))  # reports of SUMO that each
 settings = "".join(f"{name}='{os.environ[name]}' " for name in ("AGREEMENT_SECONDS", "AGREEMENT_STEPS")
                    if name in os.environ)
 steps = [float(s) for s in os.environ.get("AGREEMENT_STEPS", "0.1 0.05").split()]
-scenarios = source / "sumo_scenarios"
+scenarios = build / "sumo_scenarios"
 games = pathlib.Path("/usr/share/sumo/tools/game")
 bologna = source.parent / "shared/reference/sumo_bologna_acosta"
 

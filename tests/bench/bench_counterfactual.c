@@ -82,7 +82,7 @@ static double children_cpu_s(void)
 }
 
 // One replication of a scenario in a folder of its own.
-static outcome run(const char *source, const char *worker, const traffic *what, int treatments)
+static outcome run(const char *data, const char *worker, const traffic *what, int treatments)
 {
     char folder[] = "/tmp/crashpulse-bench-XXXXXX", study[64], db[64], text[4096], command[128];
     cp_runner_summary summary;
@@ -93,7 +93,7 @@ static outcome run(const char *source, const char *worker, const traffic *what, 
     snprintf(db, sizeof db, "%s/study.db", folder);
     int used =
         snprintf(text, sizeof text, HEAD, treatments > 0 ? "counterfactual" : "paired_seeds",
-                 what->duration_s, source, source, what->scenario, what->scenario, what->errors);
+                 what->duration_s, data, data, what->scenario, what->scenario, what->errors);
     for (int k = 0; k < treatments; k++)
         used += snprintf(text + used, sizeof text - (size_t)used,
                          "  - {name: aeb%d, functions: [{function: aeb}]}\n", k);
@@ -118,12 +118,12 @@ static outcome run(const char *source, const char *worker, const traffic *what, 
 }
 
 // By turns without pairs, with one treatment and with five, several times.
-static void run_least(const char *source, const char *worker, const traffic *what, outcome found[3])
+static void run_least(const char *data, const char *worker, const traffic *what, outcome found[3])
 {
     static const int TREATMENTS[] = {0, 1, 5};
     for (int repeat = 0; repeat < what->repeats; repeat++)
         for (int k = 0; k < 3; k++) {
-            outcome now = run(source, worker, what, TREATMENTS[k]);
+            outcome now = run(data, worker, what, TREATMENTS[k]);
             if (repeat == 0 || now.cpu_s < found[k].cpu_s)
                 found[k] = now;
         }

@@ -36,7 +36,7 @@ Sample = collections.namedtuple("Sample", "time_s vehicles resident_mb anonymous
 def study(seconds):
     """The scenario's own study: its driver errors, no function, one replication."""
     name = arguments.scenario
-    folder = arguments.source / "sumo_scenarios" / name
+    folder = arguments.build / "sumo_scenarios" / name
     text = (folder / "study.yaml").read_text()
     scenarios = text[text.index("scenarios:"):text.index("variants:")].replace(
         f"sumocfg: {name}.sumocfg",

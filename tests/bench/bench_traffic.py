@@ -89,12 +89,12 @@ def peak_of(words, name):
 
 def study(folder, duration_s, is_full):
     path = folder / f"{duration_s}.yaml"
-    town = (source / "sumo_scenarios/town/study.yaml").read_text()
+    town = (build / "sumo_scenarios/town/study.yaml").read_text()
     errors = re.search(r"^    driver_errors:.*?(?=^\S)", town, re.MULTILINE | re.DOTALL).group()
     path.write_text(
         f"study: bench\ndesign: independent\nseed: 1\nreplications: 1\nduration_s: {duration_s}\n"
         f"step_length_s: {STEP_S}\nscenarios:\n  - name: town\n"
-        f"    sumocfg: {source}/sumo_scenarios/town/town.sumocfg\n"
+        f"    sumocfg: {build}/sumo_scenarios/town/town.sumocfg\n"
         "    sumo_options: [--scale, '2']\n" + (errors if is_full else "") +
         "variants:\n  - name: baseline\n" + ("    functions: [{function: aeb}]\n" if is_full else "") +
         "vehicles:\n  default: mid_size\nbackground: {duration_s: 0}\n")

@@ -33,7 +33,7 @@ class Animation(unittest.TestCase):
     def setUpClass(cls):
         OUTPUT.mkdir(parents=True, exist_ok=True)
         own = OUTPUT / "hostile.yaml"
-        text = (VEHICLES / "small_car.yaml").read_text(encoding="utf-8")
+        text = (VEHICLES / "fleet" / "small_car.yaml").read_text(encoding="utf-8")
         own.write_text(re.sub(r"^vehicle: .*$", f"vehicle: '{HOSTILE}'", text, flags=re.M))
         other = VEHICLES / "mid_size.yaml"
         # The comparison of the reference study: barrier against two equal cars.

@@ -132,6 +132,21 @@ class Report(unittest.TestCase):
     def table(self, selector):
         return self.browser.run("return Array.from(document.querySelectorAll(`${arguments[0]} tr`), row => Array.from(row.cells, cell => cell.textContent))", selector)
 
+    def test_activations_are_those_of_the_counters(self):
+        head, *rows = self.table("#table-functions")
+        self.assertEqual(len(head), 11)
+        self.assertEqual(len(rows), self.count(
+            "SELECT count(*) FROM (SELECT DISTINCT scenario_id, variant_id FROM replication "
+            "WHERE json_extract(counters, '$.\"aeb.activations\"') IS NOT NULL)"))
+        for scenario, _, variant, function, hours, count, *_ in rows:
+            known = self.db.execute(
+                "SELECT sum(vehicle_h), sum(json_extract(counters, '$.\"aeb.activations\"')) FROM replication AS r "
+                "JOIN scenario AS s ON s.id = r.scenario_id JOIN variant AS v ON v.id = r.variant_id "
+                "WHERE r.status = 'done' AND s.name = ? AND v.name = ?", (scenario, variant)).fetchone()
+            self.assertEqual(function, "aeb")
+            self.assertEqual(hours, f"{known[0]:.1f}")
+            self.assertEqual(float(count), known[1])
+
     def test_parameters_show_what_differs(self):
         head, *rows = self.table("#parameters-functions > .scroll")
         self.assertEqual(head, ["function", "default", "baseline", "aeb"])

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The study that tests of whole runs share: the crossing of tests/run with real SUMO, seconds a
-replication, and what its database holds apart from who worked on it when."""
+replication, and whether databases hold the same apart from who worked on it when."""
 import pathlib
 import shutil
-import sqlite3
 import subprocess
+
+import compare_databases
 
 STUDY = """study: crossing
 design: paired_seeds
@@ -47,24 +48,12 @@ def run(crashpulse, *words, expect=0, environment=None):
 
 
 def rows(db):
-    """All rows of all tables but attempt and merge_source, in order."""
-    connection = sqlite3.connect(db, timeout=60)
-    found = {}
-    tables = connection.execute("SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT "
-                                "LIKE 'sqlite_%' ORDER BY name").fetchall()
-    for (table,) in tables:
-        if table not in ("attempt", "merge_source"):
-            found[table] = sorted(connection.execute(f"SELECT * FROM {table}").fetchall(), key=repr)
-    connection.close()
-    return found
+    """{table: its sorted rows}, apart from who made them when (compare_databases.py)."""
+    return {table: found for table, (_, found) in compare_databases.read(db).items()}
 
 
 def assert_same(db, other):
-    one, two = rows(db), rows(other)
-    assert one.keys() == two.keys(), (one.keys(), two.keys())
-    for table in one:
-        if one[table] != two[table]:
-            only = [row for row in one[table] if row not in two[table]][:3]
-            raise AssertionError(f"{table}: {len(one[table])} rows in {db}, {len(two[table])} in "
-                                 f"{other}; only in the first: {only}")
-    assert len(one["crash"]) > 0 and len(one["pulse"]) > 0
+    lines = compare_databases.differences(db, other)
+    assert not lines, "\n".join(lines)
+    held = rows(db)
+    assert held["crash"] and held["pulse"], f"{db} holds no crash"

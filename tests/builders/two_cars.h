@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "core/geometry.h"
 #include "core/units.h"
+#include "traffic/sumo_bridge.h"
 #include "traffic/traffic.h"
 
 #include <math.h>

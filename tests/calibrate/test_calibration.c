@@ -10,6 +10,7 @@
 #include "builders/crash_library.h"
 
 #include "calibrate/calibration.h"
+#include "calibrate/fit_file.h"
 #include "calibrate/objective.h"
 #include "core/file.h"
 

@@ -77,15 +77,33 @@ static void what_is_wrong_is_named(void **state)
         {CLASS("    speeds_km_h: [40]\n" WALL "    compare: [{quantity: momentum_ratio_1}]\n"),
          "needs a second car"},
         {CLASS("    speeds_km_h: [40]\n" WALL "    compare: [{quantity: olc_g, car: 2}]\n"),
-         "of one car goes with a table of pairs"},
+         "of one car goes with struck or a table of pairs"},
         {CLASS("    table: {form: odd, file: x.csv}\n" PEAK),
-         "table.form must be olc, separation, oblique or reconstructed, found 'odd'"},
+         "table.form must be olc, separation, oblique, reconstructed or reconstructed_struck, "
+         "found 'odd'"},
         {CLASS("    table: {form: olc}\n" PEAK), "table needs either file or references_file"},
         {CLASS("    table: {form: olc, file: x.csv}\n    speeds_km_h: [40]\n" PEAK),
          "table does not go with lists"},
         {CLASS("    table: {form: separation, file: x.csv}\n" WALL PEAK), "table.rows_with names"},
         {CLASS("    speeds_km_h: [40]\n    opponent_speeds_km_h: [0]\n" WALL PEAK),
          "opponent_speeds_km_h needs against"},
+        {CLASS("    struck: top\n    speeds_km_h: [40]\n    against: [same]\n" PEAK),
+         "classes[0].struck must be side or rear, found 'top'"},
+        {CLASS("    struck: side\n    speeds_km_h: [40]\n" PEAK),
+         "struck needs against or barrier"},
+        {CLASS("    speeds_km_h: [40]\n    at_mm: [0]\n" WALL PEAK), "struck is missing"},
+        {CLASS("    struck: rear\n    speeds_km_h: [40]\n    struck_speeds_km_h: [0, 1]\n"
+               "    against: [same]\n" PEAK),
+         "struck_speeds_km_h needs one for each"},
+        {CLASS("    struck: side\n    speeds_km_h: [40]\n    at_mm: [0]\n    against: [same]\n"
+               "    at_sweep: {from_mm: 0, to_mm: 10, count: 3}\n" PEAK),
+         "at_sweep does not go with"},
+        {CLASS("    speeds_km_h: [40]\n    barrier: {width_m: 1, depth_m: 2, corner_radius_m: 0, "
+               "mass_kg: 100}\n" PEAK),
+         "barrier mass_kg must be 0 (fixed) or between 200"},
+        {CLASS("    speeds_km_h: [40]\n    against: [same]\n    barrier: {width_m: 1, depth_m: 2, "
+               "corner_radius_m: 0, mass_kg: 1000}\n" PEAK),
+         "does not go with against"},
         {CLASS("    speeds_km_h: [40]\n" WALL PEAK
                "  - class: c\n    title: u\n    speeds_km_h: [40]\n" WALL PEAK),
          "classes[1].class is given twice"},

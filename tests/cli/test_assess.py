@@ -77,7 +77,7 @@ with tempfile.TemporaryDirectory() as name:
         "study: x\ndesign: independent\nseed: 1\nreplications: 1\nduration_s: 320\n"
         "scenarios:\n  - {name: x, sumocfg: x.sumocfg}\nvariants:\n  - name: baseline\n"
         f"vehicles:\n  default: {vehicles}/mid_size.yaml\n"
-        f"  types: [{{type: van, model: {vehicles}/van.yaml}}]\n")
+        f"  types: [{{type: van, model: {vehicles}/fleet/van.yaml}}]\n")
 
     def sumo(label, *options):
         length = [] if "--step-length" in options else ["--step-length", "0.05"]
@@ -86,7 +86,7 @@ with tempfile.TemporaryDirectory() as name:
             "--collision-output", folder / f"{label}.coll.xml", *options)
         return ["--collisions", folder / f"{label}.coll.xml", "--fcd", folder / f"{label}.fcd.xml",
                 "--routes", folder / "x.rou.xml", "--vehicle", vehicles / "mid_size.yaml",
-                "--type", f"van={vehicles}/van.yaml"]
+                "--type", f"van={vehicles}/fleet/van.yaml"]
 
     # The same crashes, roles, times, configurations and severities as the study's.
     assess = sumo("ours", *OURS, "--precision", "9")
@@ -226,12 +226,12 @@ with tempfile.TemporaryDirectory() as name:
     # b the one whose front is struck; poses lead to the configuration they were made from.
     (folder / "list.csv").write_text(
         "id,speed_a_km_h,speed_b_km_h,offset_mm,angle_deg,vehicle_b\n"
-        f"one,50,40,300,10,\ntwo,56,30,-200,0,{vehicles / 'van.yaml'}\n")
+        f"one,50,40,300,10,\ntwo,56,30,-200,0,{vehicles / 'fleet' / 'van.yaml'}\n")
     listed = rows("--configurations", folder / "list.csv", "--vehicle", vehicles / "mid_size.yaml",
                   "--db", folder / "list.db")
     for row, words in zip(listed, (
             ["mid_size.yaml", "--speed", 50, "--opponent-speed", 40, "--offset", 300, "--angle", 10],
-            ["van.yaml", "--speed", 56, "--opponent-speed", 30, "--offset", -200, "--angle", 0])):
+            ["fleet/van.yaml", "--speed", 56, "--opponent-speed", 30, "--offset", -200, "--angle", 0])):
         alone = json.loads(run(crashpulse, "crash", vehicles / "mid_size.yaml", "--against",
                                vehicles / words[0], *words[1:], "--format", "json").stdout)
         assert math.isclose(float(row["olc_a_g"]), alone["vehicles"][0]["olc_g"]), (row, alone)

@@ -20,7 +20,7 @@ HEADER = "vehicle,time_s,ax_m_s2,ay_m_s2,vx_m_s,vy_m_s,x_m,y_m,yaw_rad,yaw_rate_
 
 
 # A shipped vehicle with parameter scatter.
-SCATTERED = os.path.join(os.path.dirname(ARGS.vehicle), "small_car.yaml")
+SCATTERED = os.path.join(os.path.dirname(ARGS.vehicle), "fleet", "small_car.yaml")
 
 
 def crash(*arguments, code=0, vehicle=ARGS.vehicle):

@@ -69,7 +69,7 @@ class Suite(unittest.TestCase):
         self.assertIn("title", listed[0])
 
     def test_vehicles_are_names_or_files(self):
-        path = os.path.join(ARGS.source, "db", "vehicles", "small_car.yaml")
+        path = os.path.join(ARGS.source, "db", "vehicles", "fleet", "small_car.yaml")
         found = rows("--vehicle", path, "--vehicle", "suv")
         self.assertEqual([row["vehicle"] for row in found[:3:2]], ["small_car", "suv"])
         foreign = [row for row in found if row["class"] == "olc_table"]
@@ -87,7 +87,7 @@ class Suite(unittest.TestCase):
         self.assertIn("kept", {row["result"] for row in found})
 
     def test_what_is_wrong_is_said(self):
-        self.assertIn("'racer' is no vehicle", call("--suite", SUITE, "--vehicle", "racer", code=2).stderr)
+        self.assertIn("no vehicle 'racer' is shipped", call("--suite", SUITE, "--vehicle", "racer", code=2).stderr)
         self.assertIn("absent.yaml", call("--suite", "absent.yaml", code=2).stderr)
         self.assertIn("go with --suite", call("--vehicle", "suv", code=2).stderr)
         self.assertIn("choose vehicles with --vehicle", call("--suite", SUITE, "car.yaml", code=2).stderr)
@@ -135,6 +135,33 @@ class Shipped(unittest.TestCase):
             text = read(os.path.join(VALIDATION, "scorecard.md"))
             for row in shipped:
                 self.assertIn(f"(`{row['class']}`)", text)
+
+    def test_evidence_is_that_of_the_scorecard(self):
+        """Fails after a change of a scorecard, a vehicle or the boxes: cmake --build build --target evidence"""
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, os.path.join(VALIDATION, "evidence.py"), ARGS.crashpulse,
+                            "--output", folder], check=True)
+            new, shipped = ([row for row in csv.reader(io.StringIO(read(os.path.join(where, "evidence.csv"))))]
+                            for where in (folder, VALIDATION))
+            self.assertEqual(len(new), len(shipped))
+            error = shipped[1].index("error_1")
+            for one, other in zip(new[2:], shipped[2:]):
+                self.assertAlmostEqual(float(one[error]), float(other[error]), delta=2e-3, msg=str(other))
+                self.assertEqual(one[:error] + one[error + 1:], other[:error] + other[error + 1:])
+
+    @unittest.skipUnless(os.path.isdir(REFERENCES), f"{REFERENCES} is not there")
+    def test_vehicle_classes_are_those_of_the_tests(self):
+        script = os.path.join(ARGS.source, "db", "vehicles", "fleet")
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, os.path.join(script, "make_classes.py"), REFERENCES,
+                            "--output", folder], check=True)
+            subprocess.run([sys.executable, os.path.join(script, "make_heavy.py"), "--output", folder],
+                           check=True)
+            names = sorted(os.listdir(folder))
+            self.assertIn("classes.csv", names)
+            self.assertEqual(len(names), 1 + 2 * 7 + 4)
+            for name in names:
+                self.assertEqual(read(os.path.join(folder, name)), read(os.path.join(script, name)), name)
 
 
 if __name__ == "__main__":

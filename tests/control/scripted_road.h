@@ -183,7 +183,7 @@ static inline road_car *road_add(const char *id, double x_m, double y_m, double 
     car->is_there = true;
     car->command_m_s = -1.0;
     car->mode = 31;
-    car->light = (cp_next_light){.distance_m = INFINITY, .number = SUMO_BRIDGE_NONE};
+    car->light = (cp_next_light){.distance_m = INFINITY, .number = CP_NO_NUMBER};
     road.count++;
     return car;
 }

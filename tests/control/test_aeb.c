@@ -41,7 +41,7 @@ static void braking_follows_the_profile_whatever_the_step(void **unused)
         road_add("own", 0.0, 0.0, 0.0, 20.0);
         road_add("standing", 50.3 + 4.5, 0.0, 0.0, 0.0);
         double start_s = steps_s[k] + 50.3 / 20.0 - 1.2 + 0.35; // put there by the first step
-        cp_brake profile = {start_s, 30.0, 7.0};
+        cp_brake profile = {start_s, 30.0, 7.0, 0.0};
         while (road.time_s < start_s + 0.7) {
             step(traffic, controls);
             double expected_m_s = 20.0 - cp_brake_speed_loss_m_s(&profile, road.time_s);
@@ -63,7 +63,7 @@ static void a_trigger_inside_the_step_is_caught_up(void **unused)
     cp_controls *controls = create(traffic, names, values);
     road_add("own", 0.0, 0.0, 0.0, 20.0);
     road_add("standing", 20.0 + 4.5 + 0.74 * 20.0, 0.0, 0.0, 0.0);
-    cp_brake profile = {0.1 + 0.74, 1000.0, 8.0};
+    cp_brake profile = {0.1 + 0.74, 1000.0, 8.0, 0.0};
     while (road.time_s < 1.45) {
         step(traffic, controls);
         if (road.time_s > 0.95)

@@ -68,7 +68,7 @@ static double straight_m_s(double own_m_s, double other_m_s, double ttc_s)
 {
     double request_s = fmin(ttc_s, own_m_s / (2.0 * REQUIRED_M_S2));
     double gap_m = request_s * (own_m_s + other_m_s), fine_s = 1e-4;
-    cp_brake brake = {LATENCY_S + DEAD_TIME_S, JERK_M_S3, DECELERATION_M_S2};
+    cp_brake brake = {LATENCY_S + DEAD_TIME_S, JERK_M_S3, DECELERATION_M_S2, 0.0};
     for (double time_s = 0.0;; time_s += fine_s) {
         double speed_m_s = own_m_s - cp_brake_speed_loss_m_s(&brake, time_s);
         if (speed_m_s <= 0.0)

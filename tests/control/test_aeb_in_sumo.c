@@ -69,7 +69,7 @@ static bool is_threat(const two_cars *e, double way_m, double speed_m_s, double 
 static double exact_impact_m_s(const two_cars *e, double *impact_s, double *request_s)
 {
     const double fine_s = 5e-4;
-    cp_brake brake = {INFINITY, JERK_M_S3, DECELERATION_M_S2};
+    cp_brake brake = {INFINITY, JERK_M_S3, DECELERATION_M_S2, 0.0};
     for (double time_s = 0.0; time_s < 12.0; time_s += fine_s) {
         double speed_m_s = e->own_m_s - cp_brake_speed_loss_m_s(&brake, time_s);
         if (speed_m_s <= 0.0)
@@ -146,7 +146,7 @@ static found in_sumo(const two_cars *e)
         double now_s = cp_traffic_time_s(traffic);
         begun_s = isnan(begun_s) ? now_s : begun_s;
         cp_rectangle exact = two_cars_target_at(e, now_s - begun_s);
-        cp_rectangle there = cp_footprint_of_state(&target->after);
+        cp_rectangle there = cp_vehicle_rectangle(&target->after);
         result.astray_m =
             fmax(result.astray_m, cp_vec2_length(cp_vec2_sub(there.centre_m, exact.centre_m)));
         double fraction;

@@ -83,7 +83,7 @@ static double exact_way_m(const encounter *e, const cp_brake *brake, double time
 static double exact_impact_m_s(const encounter *e, double *impact_s)
 {
     const double fine_s = 5e-4;
-    cp_brake brake = {INFINITY, JERK_M_S3, DECELERATION_M_S2};
+    cp_brake brake = {INFINITY, JERK_M_S3, DECELERATION_M_S2, 0.0};
     for (double time_s = 0.0; time_s < 12.0; time_s += fine_s) {
         double speed_m_s = e->own_m_s - cp_brake_speed_loss_m_s(&brake, time_s);
         if (speed_m_s <= 0.0)

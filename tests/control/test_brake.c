@@ -12,7 +12,7 @@
 static void loss_is_the_integral_of_ramp_and_plateau(void **unused)
 {
     (void)unused;
-    const cp_brake brake = {2.0, 40.0, 8.0}; // ramp of 0.2 s
+    const cp_brake brake = {2.0, 40.0, 8.0, 0.0}; // ramp of 0.2 s
     assert_true(cp_brake_speed_loss_m_s(&brake, 1.0) == 0.0);
     assert_true(cp_brake_speed_loss_m_s(&brake, 2.0) == 0.0);
     assert_true(fabs(cp_brake_speed_loss_m_s(&brake, 2.1) - 0.2) < 1e-12);

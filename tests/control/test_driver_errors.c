@@ -85,7 +85,7 @@ static void a_runner_heeds_no_red_and_some_do_not_expect_him(void **unused)
     assert_string_equal(road.cars[2].value, ""); // behind him, same way
 
     // Past it: five seconds later he is a driver like others.
-    runner->light = (cp_next_light){INFINITY, SUMO_BRIDGE_NONE, false};
+    runner->light = (cp_next_light){INFINITY, CP_NO_NUMBER, false};
     for (int k = 0; k < 52; k++)
         step(traffic, controls);
     assert_int_equal(runner->mode, 31);

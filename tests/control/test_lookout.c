@@ -342,7 +342,7 @@ static cp_status sign_next_light(uint32_t vehicle, cp_next_light *light, cp_erro
     (void)error;
     *light = sign_light;
     if (vehicle != 0)
-        *light = (cp_next_light){.distance_m = INFINITY, .number = SUMO_BRIDGE_NONE};
+        *light = (cp_next_light){.distance_m = INFINITY, .number = CP_NO_NUMBER};
     else if (sign_light.is_red)
         light->distance_m = 100.0 - road.cars[0].state.front_x_m;
     return CP_OK;

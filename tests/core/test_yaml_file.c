@@ -121,6 +121,17 @@ static void complaints_name_the_line_of_the_key(void **state)
         {"parts: []\n", "Missing required mapping field: car"},
         {"car: one\nparts:\n  - name: a\n    wheels: 4\n", ":4: Unexpected key: wheels"},
         {"car: [\n", ":"},
+        {"crr: one\nparts: []\n", ":1: Unexpected key: crr; did you mean 'car'?"},
+        {"car: one\nparts: []\ncolour: red\n", "colour; allowed are car, parts"},
+        {"car: one\nparts: [engine]\n",
+         ":2: parts[0] must be a mapping with the keys name, mass_kg; found the text 'engine'; for "
+         "example {name: engine}"},
+        {"car: one\nparts: engine\n",
+         ":2: parts must be a list, found the text 'engine'; for example [{name: engine}]"},
+        {"car: one\nparts: {name: engine}\n", ":2: parts must be a list ('- ' in front"},
+        {"car: one\nparts:\n  - [name]\n", ":3: parts[0] must be a mapping, found a list"},
+        {"car: [one]\nparts: []\n",
+         ":1: car must be a text or a number, found a list or a mapping"},
     };
     for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
         cp_yaml_file file;

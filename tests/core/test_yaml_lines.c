@@ -8,6 +8,8 @@
 
 #include "core/yaml_lines.h"
 
+#include "core/yaml_file.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -56,7 +56,11 @@ static void a_single_step_to_the_barrier_is_enough(void **state)
     (void)state;
     // Face to face the first step already arrives: round angles and offsets must not be lost.
     cp_vehicle_model car = cp_vehicle_model_default();
-    car.barrier = (cp_barrier){1.85, 1.197, 0.2672, 0.6, -1.0};
+    car.barrier = (cp_barrier){.width_m = 1.85,
+                               .depth_m = 1.197,
+                               .corner_radius_m = 0.2672,
+                               .pivot_m = 0.6,
+                               .friction_1 = -1.0};
     for (int angle_deg = -30; angle_deg <= 30; angle_deg += 5) {
         for (int offset_mm = -700; offset_mm <= 700; offset_mm += 50) {
             cp_crash_configuration configuration =

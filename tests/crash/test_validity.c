@@ -30,7 +30,7 @@ static unsigned validity_of(const cp_vehicle_model *a, const cp_vehicle_model *b
         crash_builder_configuration(a, b, speed_a, speed_b, offset_mm, angle_deg);
     cp_crash_description description =
         cp_crash_describe(a, b, &configuration, cp_crash_contact_point(a, b, &configuration));
-    return cp_validity(a, b, &configuration, &description, role);
+    return cp_validity(a, b, &configuration, &description, role, NULL);
 }
 
 static void the_reference_study_is_inside(void **state)

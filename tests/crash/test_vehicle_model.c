@@ -130,10 +130,10 @@ static void every_error_names_line_and_field(void **state)
     (void)state;
     expect_refusal("", ":", "empty");
     expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: heavy}\n",
-                   ":3:", "must be a number from 500 to 5000, found 'heavy'");
+                   ":3:", "must be a number from 500 to 60000, found 'heavy'");
     expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: nan}\n", ":3:", "'nan'");
     expect_refusal("vehicle: x\nparameters:\n  - {name: mass_kg, value: 20}\n",
-                   ":3:", "between 500 and 5000, found 20");
+                   ":3:", "between 500 and 60000, found 20");
     expect_refusal("vehicle: x\nparameters:\n  - {name: mess_kg, value: 20}\n", ":3:", "mess_kg");
     expect_refusal("vehicle: x\nparameters:\n  - {name: corner_strips_1, value: 2.5}\n", ":",
                    "corner_strips_1 must be a whole number, found 2.5");

@@ -12,6 +12,7 @@
 #include "exchange/sumo_fcd.h"
 #include "exchange/sumo_types.h"
 #include "study/plan.h"
+#include "study/study_file.h"
 #include "study/sumo_configuration.h"
 
 #include <math.h>

@@ -7,6 +7,7 @@
 #include "store/result_rows.h"
 #include "store/store_sqlite.h"
 #include "store/stored_crash.h"
+#include "store/stored_pulse.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -135,7 +136,8 @@ void fuzz_rows(const uint8_t *data, size_t size)
     if (status == CP_OK)
         simulate(crash);
     error = (cp_error){0};
-    status = cp_result_pulse_read(store, crash_id, "a", &pulse, &error);
+    bool there = false;
+    status = cp_stored_pulse_read(store, crash_id, NULL, "a", &pulse, &there, &error);
     fuzz_judge(status, &error);
     cp_pulse_destroy(&pulse);
     sqlite3_exec(cp_store_sqlite(store), "ROLLBACK", NULL, NULL, NULL);

@@ -46,7 +46,7 @@ def fcd():
 
 
 def car(vehicles):
-    text = (pathlib.Path(vehicles) / "small_car.yaml").read_text()
+    text = (pathlib.Path(vehicles) / "fleet" / "small_car.yaml").read_text()
     return "\n".join(line for line in text.splitlines() if not line.startswith("#")) + "\n"
 
 

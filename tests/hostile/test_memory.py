@@ -36,7 +36,7 @@ parser.add_argument("--jobs", type=int, default=2)
 parser.add_argument("--only", action="append", help="this command only")
 a = parser.parse_args()
 
-CAR, SUV = a.vehicles + "/honda_accord_2014.yaml", a.vehicles + "/suv.yaml"
+CAR, SUV = a.vehicles + "/honda_accord_2014.yaml", a.vehicles + "/fleet/suv.yaml"
 # Name: words; share of the samples; in which program.
 COMMANDS = {
     "crash": (["crash", CAR, "--speed", "56", "--format", "json"], 1, "crashpulse"),
@@ -88,7 +88,7 @@ def prepare(folder):
     (folder / "fit.yaml").write_text(FIT)
     (folder / "list.csv").write_text(hostile.LIST)
     (folder / "reference.csv").write_text(REFERENCE)
-    shutil.copy(a.vehicles + "/small_car.yaml", folder)
+    shutil.copy(a.vehicles + "/fleet/small_car.yaml", folder)
     shutil.copytree(a.network, folder / "net")
     shutil.copy(a.db, folder / "study.db")
     subprocess.run([a.crashpulse, "assess", "--configurations", "list.csv", "--db", "list.db"],

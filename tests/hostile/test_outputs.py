@@ -39,8 +39,8 @@ with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name) / "work"
     (folder / "sub").mkdir(parents=True)
     shutil.copy(a.db, folder / "study.db")
-    shutil.copy(a.vehicles + "/small_car.yaml", folder / "base.yaml")
-    shutil.copy(a.vehicles + "/suv.yaml", folder / "suv.yaml")
+    shutil.copy(a.vehicles + "/fleet/small_car.yaml", folder / "base.yaml")
+    shutil.copy(a.vehicles + "/fleet/suv.yaml", folder / "suv.yaml")
     (folder / "reference.csv").write_text(REFERENCE)
     (folder / "pulse.csv").write_text(PULSE)
     os.link(folder / "study.db", folder / "twin.svg")

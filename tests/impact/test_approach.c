@@ -122,7 +122,7 @@ static bool look_closely(const cp_vehicle_motion *a, const cp_vehicle_motion *b,
     for (int k = 0; k <= 4000; k++) {
         cp_vehicle_state at_a = cp_motion_at(a, dt_s, k / 4000.0);
         cp_vehicle_state at_b = cp_motion_at(b, dt_s, k / 4000.0);
-        cp_rectangle one = cp_footprint_of_state(&at_a), other = cp_footprint_of_state(&at_b);
+        cp_rectangle one = cp_vehicle_rectangle(&at_a), other = cp_vehicle_rectangle(&at_b);
         double separation_m = cp_rectangle_separation(&one, &other);
         *depth_m = fmax(*depth_m, -separation_m);
         if (separation_m <= 0.0 && !touched) {
@@ -164,7 +164,7 @@ static void random_encounters_agree_with_looking_closely(void **state)
             // Just touching there, apart shortly before, and no later than seen.
             cp_vehicle_state at_a = cp_motion_at(&a, 0.1, fraction);
             cp_vehicle_state at_b = cp_motion_at(&b, 0.1, fraction);
-            cp_rectangle ra = cp_footprint_of_state(&at_a), rb = cp_footprint_of_state(&at_b);
+            cp_rectangle ra = cp_vehicle_rectangle(&at_a), rb = cp_vehicle_rectangle(&at_b);
             assert_near(cp_rectangle_separation(&ra, &rb), 0.0, 1e-12);
             clipped++;
         }

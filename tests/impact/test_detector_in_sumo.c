@@ -165,7 +165,7 @@ static cp_vehicle_state exact_state(const two_cars *e, double brake_s, uint32_t 
 static double gap_at(const two_cars *e, double brake_s, double time_s)
 {
     cp_vehicle_state own = exact_state(e, brake_s, 0, time_s);
-    cp_rectangle one = cp_footprint_of_state(&own), other = two_cars_target_at(e, time_s);
+    cp_rectangle one = cp_vehicle_rectangle(&own), other = two_cars_target_at(e, time_s);
     return cp_rectangle_separation(&one, &other);
 }
 

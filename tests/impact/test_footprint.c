@@ -24,7 +24,7 @@ static void the_rectangle_hangs_behind_the_front_bumper(void **state)
                             .yaw_rad = CP_PI / 2.0,
                             .length_m = 4.0,
                             .width_m = 1.8};
-    cp_rectangle r = cp_footprint_of_state(&car);
+    cp_rectangle r = cp_vehicle_rectangle(&car);
     assert_near(r.centre_m.x, 10.0, 1e-12);
     assert_near(r.centre_m.y, 18.0, 1e-12);
     assert_near(r.length_m, 4.0, 0.0);

@@ -22,7 +22,7 @@ static const cp_kept_heading EAST = {.yaw_rad = 0.0, .unit = {1.0, 0.0}};
 // All four corners of the rectangle of a state lie in the box.
 static void assert_holds(const cp_box *box, const cp_vehicle_state *state)
 {
-    cp_rectangle rectangle = cp_footprint_of_state(state);
+    cp_rectangle rectangle = cp_vehicle_rectangle(state);
     cp_pose pose = {rectangle.centre_m, rectangle.yaw_rad};
     for (int corner = 0; corner < 4; corner++) {
         cp_vec2 local = {(corner < 2 ? 0.5 : -0.5) * rectangle.length_m,

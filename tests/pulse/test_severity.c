@@ -165,6 +165,7 @@ static void force_from_the_side_and_from_behind(void **state)
     assert_near(s.pdof_rad, CP_PI / 2.0, 1e-12);
     assert_near(s.delta_v_y_m_s, 9.0, 1e-12);
     assert_near(s.asi_1, 90.0 / CP_G0_M_S2 / 9.0, 1e-9);
+    assert_near(s.max_50ms_y_g, 90.0 / CP_G0_M_S2, 1e-9);
     assert_true(isnan(s.mean_g));
     assert_int_equal(s.olc.status, CP_OLC_NO_DECELERATION);
 
@@ -174,6 +175,20 @@ static void force_from_the_side_and_from_behind(void **state)
     assert_near(s.pdof_rad, CP_PI, 1e-12);
     assert_near(s.delta_v_x_m_s, -9.0, 1e-12);
     assert_near(s.delta_v_m_s, 9.0, 1e-12);
+}
+
+// Constant 6 g along x and 6 g to the right together: the two parts of ASI add as squares.
+static void asi_adds_both_axes(void **state)
+{
+    (void)state;
+    cp_pulse pulse = rectangle(401, 200, 10.0, 6.0 * CP_G0_M_S2);
+    for (size_t k = 1; k < 401; k++)
+        pulse.channel[CP_CHANNEL_VY][k] =
+            pulse.channel[CP_CHANNEL_VY][k - 1] - (k <= 200 ? 6.0 * CP_G0_M_S2 * INTERVAL_S : 0.0);
+    cp_severity s = judge(&pulse, 0.1, 0);
+    assert_near(s.asi_1, sqrt(0.25 + 4.0 / 9.0), 1e-9);
+    assert_near(s.max_50ms_g, 6.0, 1e-9);
+    assert_near(s.max_50ms_y_g, 6.0, 1e-9);
 }
 
 static void an_undisturbed_car_has_no_direction_of_force(void **state)
@@ -209,6 +224,7 @@ int main(void)
         cmocka_unit_test(the_end_is_separation_or_the_largest_delta_v),
         cmocka_unit_test(delta_v_of_a_turning_car_is_that_of_the_world),
         cmocka_unit_test(force_from_the_side_and_from_behind),
+        cmocka_unit_test(asi_adds_both_axes),
         cmocka_unit_test(an_undisturbed_car_has_no_direction_of_force),
         cmocka_unit_test(a_pulse_too_coarse_or_too_short_is_refused),
     };

@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "report/small_study.h"
+#include "builders/small_study.h"
 
 static void places_are_filled_as_they_are(void **state)
 {
@@ -52,7 +52,7 @@ static void data_is_safe_in_a_script_and_unchanged(void **state)
     cp_comparison_options options = {.repetitions = 10, .permutations = 9};
     assert_int_equal(cp_study_data_read(store, &data, &error), CP_OK);
     assert_int_equal(cp_page_data(store, &data, 0, &options, &page, &answer, &error), CP_OK);
-    char *text = cp_page_data_text(page);
+    char *text = cp_page_json_text(page);
     assert_non_null(text);
     assert_null(strpbrk(text, "<>&"));
     json_t *back = json_loads(text, 0, NULL);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/plot.h"
 
+#include "analysis/comparison.h"
 #include "core/file.h"
 
 #include <setjmp.h>
@@ -11,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "report/small_study.h"
+#include "builders/small_study.h"
 
 typedef struct fixture {
     cp_store *store;

@@ -31,7 +31,15 @@ typedef struct world {
     sem_t *looping; /* shared memory: posted by a branch that loops; may be NULL */
 } world;
 
-typedef enum deed { COUNT_UP, ABORT, LOOP, READ_AND_WRITE, EXIT_BADLY, ANSWER_MUCH } deed;
+typedef enum deed {
+    COUNT_UP,
+    ABORT,
+    LOOP,
+    READ_AND_WRITE,
+    FAIL,
+    FAIL_IN_SILENCE,
+    ANSWER_MUCH
+} deed;
 
 static void loop_forever(void)
 {
@@ -40,7 +48,8 @@ static void loop_forever(void)
         continue;
 }
 
-static int branch(void *context, size_t number, const void *request, size_t size, int answer)
+static cp_status branch(void *context, size_t number, const void *request, size_t size, int answer,
+                        cp_error *error)
 {
     world *w = context;
     deed what = *(const deed *)request;
@@ -52,35 +61,39 @@ static int branch(void *context, size_t number, const void *request, size_t size
             sem_post(w->looping);
         loop_forever();
     }
-    if (what == EXIT_BADLY)
-        return 1;
+    if (what == FAIL && number == 1)
+        return cp_fail(error, CP_TRAFFIC_FAILED, "SUMO stopped: %040d", 7);
+    if (what == FAIL_IN_SILENCE)
+        return CP_RUN_FAILED;
     if (what == READ_AND_WRITE) {
         char line[32];
         if (fgets(line, sizeof line, w->in) == NULL || fputs("branch\n", w->out) < 0 ||
             fflush(w->out) != 0)
-            return 1;
-        return cp_branch_write(answer, line, strlen(line) + 1) ? 0 : 1;
+            return CP_IO_FAILED;
+        return cp_branch_write(answer, line, strlen(line) + 1) ? CP_OK : CP_IO_FAILED;
     }
     if (what == ANSWER_MUCH) {
         char block[4096] = {7};
         for (int k = 0; k < 1000; k++)
             if (!cp_branch_write(answer, block, sizeof block))
-                return 1;
-        return 0;
+                return CP_IO_FAILED;
+        return CP_OK;
     }
     w->count += (int)number + 1;
-    return cp_branch_write(answer, &w->count, sizeof w->count) ? 0 : 1;
+    return cp_branch_write(answer, &w->count, sizeof w->count) ? CP_OK : CP_IO_FAILED;
 }
 
 // The count is the clock: what the original did between a copy and a checkpoint.
-static int advance(void *context, double time_s)
+static cp_status advance(void *context, double time_s, cp_error *error)
 {
     world *w = context;
     while (w->count < (int)time_s)
         w->count++;
     if (w->aborts_at != 0 && w->count == w->aborts_at)
         abort();
-    return w->fails_at != 0 && w->count == w->fails_at ? 1 : 0;
+    return w->fails_at != 0 && w->count == w->fails_at
+               ? cp_fail(error, CP_TRAFFIC_FAILED, "SUMO stopped at %d", w->count)
+               : CP_OK;
 }
 
 static cp_checkpoints *create_every(world *w, size_t kept, size_t every, unsigned cpu_s)
@@ -244,8 +257,10 @@ static void a_checkpoint_that_is_not_reached_says_why(void **unused)
     const struct {
         double time_s;
         const char *failure;
-    } WAYS[] = {{13, "ended by signal 6 (Aborted)"}, {17, "failed"}};
-    for (size_t way = 0; way < 2; way++) {
+    } WAYS[] = {{13, "ended by signal 6 (Aborted)"},
+                {17, "failed: SUMO stopped at 17"},
+                {13, "ended by signal 6 (Aborted)"}};
+    for (size_t way = 0; way < 3; way++) {
         assert_true(
             cp_checkpoints_branch(checkpoints, WAYS[way].time_s, &what, sizeof what, 2, ends));
         for (int k = 0; k < 2; k++) {
@@ -318,7 +333,14 @@ static void a_branch_that_dies_harms_nobody(void **unused)
     assert_true(cp_checkpoints_branch(checkpoints, 1.0, &what, sizeof what, 1, ends));
     assert_false(ends[0].answered);
     assert_string_equal(ends[0].failure, "out of processor time");
-    what = EXIT_BADLY;
+
+    // What it says of its failure is told of this branch and of no other.
+    what = FAIL;
+    assert_true(cp_checkpoints_branch(checkpoints, 1.0, &what, sizeof what, 3, ends));
+    assert_true(ends[0].answered && !ends[1].answered && ends[2].answered);
+    assert_string_equal(ends[1].failure, "failed: SUMO stopped: "
+                                         "0000000000000000000000000000000000000007");
+    what = FAIL_IN_SILENCE;
     assert_true(cp_checkpoints_branch(checkpoints, 1.0, &what, sizeof what, 1, ends));
     assert_string_equal(ends[0].failure, "failed");
 

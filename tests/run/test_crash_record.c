@@ -63,7 +63,7 @@ static cp_impact_names names_of(const char *type_of_b)
         .sumocfg_path = "a.sumocfg",
         .sumo_id = {"one", "two"},
         .sumo_type = {"passenger", type_of_b},
-        .type = {{"passenger", "", 4.86, 1.85, 1.5, NAN}, {"truck", "", 7.1, 2.4, 2.4, NAN}},
+        .type = {{"passenger", "", 4.86, 1.85, 1.5, NAN}, {"tram", "", 7.1, 2.4, 2.4, NAN}},
         .at_fault = {true, false}};
 }
 
@@ -110,6 +110,53 @@ static void front_to_front(void **state)
     cp_result_rows_destroy(&rows);
 }
 
+// Speed as against a wall: the lighter car's is the higher, whichever role it has.
+static void validity_is_each_cars_own(void **state)
+{
+    (void)state;
+    cp_error error = {0};
+    for (int role_of_van = 0; role_of_van < 2; role_of_van++) {
+        small_fleet f;
+        cp_result_rows rows = {0};
+        fill_fleet(&f);
+        for (int k = 0; k < 2; k++) {
+            f.models[k].calibrated_speed_min_m_s = 25.0 / 3.6;
+            f.models[k].calibrated_speed_max_m_s = 56.0 / 3.6;
+            f.models[k].calibrated_offset_max_m = 1.05;
+            f.models[k].calibrated_angle_max_rad = 0.5;
+        }
+        f.models[0].mass_kg =
+            1400.0; // 108 km/h of closing: 68.2 km/h for the car, 39.8 for the van
+        cp_impact impact = head_on(0.0);
+        cp_impact_names names = names_of("van");
+        if (role_of_van == 0) {
+            names.sumo_type[0] = "van";
+            names.sumo_type[1] = "passenger";
+            const cp_sumo_type car = names.type[0];
+            names.type[0] = names.type[1];
+            names.type[1] = car;
+        }
+        cp_crash_row *row = cp_result_rows_add_crash(&rows);
+        assert_int_equal(
+            cp_crash_record_fill(&impact, &names, &f.fleet, CP_RECORD_ALL, row, &error), CP_OK);
+        assert_string_equal(row->vehicle[role_of_van].vehicle_model, "van");
+        assert_int_equal(row->vehicle[role_of_van].outside, 0);
+        assert_int_equal(row->vehicle[1 - role_of_van].outside, CP_OUTSIDE_SPEED);
+        cp_result_rows_destroy(&rows);
+
+        // A van that was never calibrated says nothing of the car.
+        f.models[1].calibrated_speed_max_m_s = 0.0;
+        f.models[1].calibrated_speed_min_m_s = 0.0;
+        rows = (cp_result_rows){0};
+        row = cp_result_rows_add_crash(&rows);
+        assert_int_equal(
+            cp_crash_record_fill(&impact, &names, &f.fleet, CP_RECORD_ALL, row, &error), CP_OK);
+        assert_true(row->vehicle[role_of_van].outside & CP_OUTSIDE_MODEL);
+        assert_int_equal(row->vehicle[1 - role_of_van].outside, CP_OUTSIDE_SPEED);
+        cp_result_rows_destroy(&rows);
+    }
+}
+
 static void olc_is_for_struck_fronts_only(void **state)
 {
     (void)state;
@@ -125,6 +172,11 @@ static void olc_is_for_struck_fronts_only(void **state)
     assert_true(isnan(rows.crash->vehicle[1].severity.olc.olc_g));
     assert_true(rows.crash->vehicle[1].severity.delta_v_m_s > 1.0);
     assert_true((rows.crash->vehicle[1].outside & CP_OUTSIDE_CONTACT_SIDE) != 0);
+    // What OLC does not say of the struck one is there.
+    assert_string_equal(rows.crash->vehicle[0].intrusion_zone, "front");
+    assert_string_equal(rows.crash->vehicle[1].intrusion_zone, "rear");
+    assert_true(rows.crash->vehicle[1].intrusion_m > 0.05);
+    assert_true(rows.crash->vehicle[1].severity.asi_1 > 0.1);
     cp_result_rows_destroy(&rows);
 }
 
@@ -139,7 +191,8 @@ static void crash_without_simulation_is_kept(void **state)
         const cp_crash_vehicle_row *vehicle = &rows.crash->vehicle[role];
         assert_int_equal(vehicle->severity.olc.status, CP_OLC_SIMULATION_FAILED);
         assert_true(isnan(vehicle->severity.delta_v_m_s));
-        assert_true(isnan(vehicle->crush_m));
+        assert_true(isnan(vehicle->crush_m) && isnan(vehicle->intrusion_m));
+        assert_null(vehicle->intrusion_zone);
         assert_null(vehicle->pulse);
         assert_true(vehicle->speed_m_s == 15.0);
         assert_true((vehicle->outside & CP_OUTSIDE_NO_CONTACT) != 0);
@@ -177,7 +230,7 @@ static void a_repeated_crash_is_the_known_one(void **state)
     cp_result_rows_destroy(&rows);
 }
 
-// A truck: what happened is kept, no severity of either, and both say why.
+// A tram: what happened is kept, no severity of either, and both say why.
 static void vehicle_without_model_is_no_car(void **state)
 {
     (void)state;
@@ -190,7 +243,7 @@ static void vehicle_without_model_is_no_car(void **state)
     assert_string_equal(car->vehicle_model, "car");
     assert_string_equal(car->chosen_by, "study_default");
     assert_string_equal(truck->vehicle_model, CP_NO_VEHICLE_MODEL);
-    assert_string_equal(truck->no_model_reason, "no shipped model of vClass truck");
+    assert_string_equal(truck->no_model_reason, "no shipped model of vClass tram");
     assert_int_equal(truck->outside, CP_OUTSIDE_NO_MODEL);
     assert_true((car->outside & CP_OUTSIDE_OPPONENT_STRUCTURE) != 0);
     assert_true((car->outside & CP_OUTSIDE_NO_MODEL) == 0);
@@ -225,6 +278,7 @@ static void what_touches_in_traffic_touches_in_the_crash(void **state)
         for (int role = 0; role < 2; role++)
             assert_non_null(rows.crash->vehicle[role].pulse);
         assert_true(rows.crash->vehicle[1].severity.delta_v_m_s > 0.1);
+        assert_string_equal(rows.crash->vehicle[1].intrusion_zone, "rear");
         assert_int_equal((rows.crash->vehicle[1].outside & CP_OUTSIDE_SIZE) != 0, k == 2);
         cp_result_rows_destroy(&rows);
     }
@@ -246,9 +300,8 @@ static bool slide_to_touch(cp_impact *impact, cp_vec2 middle_m, cp_touching_body
         b->front_x_m = front_m.x;
         b->front_y_m = front_m.y;
         for (int role = 0; role < 2; role++)
-            body[role] =
-                (cp_touching_body){.rectangle = cp_footprint_of_state(&impact->state[role]),
-                                   .front_velocity_m_s = impact->front_velocity_m_s[role]};
+            body[role] = (cp_touching_body){.rectangle = cp_vehicle_rectangle(&impact->state[role]),
+                                            .front_velocity_m_s = impact->front_velocity_m_s[role]};
         bool apart = cp_rectangle_separation(&body[0].rectangle, &body[1].rectangle) > 0.0;
         if (k == 0 && !apart)
             return false;
@@ -297,6 +350,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(front_to_front),
+        cmocka_unit_test(validity_is_each_cars_own),
         cmocka_unit_test(olc_is_for_struck_fronts_only),
         cmocka_unit_test(crash_without_simulation_is_kept),
         cmocka_unit_test(vehicle_without_model_is_no_car),

@@ -134,7 +134,7 @@ static outcome crash(const encounter *meeting, double step_length_s,
 {
     char configuration[1024], routes[64];
     snprintf(configuration, sizeof configuration, "%s/sumo_scenarios/%s/%s.sumocfg",
-             getenv("CRASHPULSE_SOURCE"), meeting->scenario, meeting->scenario);
+             getenv("CRASHPULSE_BUILD"), meeting->scenario, meeting->scenario);
     write_routes(meeting, routes);
     const char *options[] = {"--route-files", routes};
     cp_traffic_options traffic_options = {.sumocfg = configuration,

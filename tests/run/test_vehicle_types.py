@@ -26,7 +26,7 @@ TYPES = {
                "toyota_camry_2018", "study"),
     "heavy": ('length="4.9" width="1.9"', '<param key="vehicleMass" value="2900"/>', None,
               "no shipped model of vClass passenger is 4.9 m long, 1.9 m wide, 1.5 m high, 2900 kg"),
-    "lorry": ('vClass="truck"', "", None, "no shipped model of vClass truck"),
+    "lorry": ('vClass="truck"', "", "rigid_truck", "class_and_size"),
     "rider": ('vClass="motorcycle"', "", None, "no shipped model of vClass motorcycle"),
     "coach_as_car": ('length="13" width="2.5"', "", None,
                      "no shipped model of vClass passenger is 13 m long, 2.5 m wide, 1.5 m high"),
@@ -134,7 +134,7 @@ with tempfile.TemporaryDirectory() as name:
     models = {(row[0], row[1]) for row in connection.execute(
         "SELECT sumo_type, vehicle_model FROM crash_vehicle")}
     expected = {"plain": "mine", "little": "mine", "parcels": "van", "named": "suv",
-                "mapped": "toyota_camry_2018", "own_file": "mine"}
+                "mapped": "toyota_camry_2018", "own_file": "mine", "lorry": "rigid_truck"}
     check(models and all(expected.get(t, "none") == m for t, m in models), models)
     connection.close()
 

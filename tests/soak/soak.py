@@ -38,7 +38,7 @@ background: {{duration_s: 0}}
 vehicles:
   default: {vehicles}/honda_accord_2014.yaml
   types:
-    - {{type: small_car, model: {vehicles}/small_car.yaml}}
+    - {{type: small_car, model: {vehicles}/fleet/small_car.yaml}}
     - {{type: mid_size_car, model: {vehicles}/mid_size.yaml}}
     - {{type: suv, model: {vehicles}/suv.yaml}}
     - {{type: van, model: {vehicles}/van.yaml}}
@@ -48,7 +48,7 @@ Sample = collections.namedtuple("Sample", "time_s vehicles resident_mb anonymous
 
 
 def write_study(folder):
-    town = arguments.source / "sumo_scenarios" / "town"
+    town = arguments.build / "sumo_scenarios" / "town"
     text = (town / "study.yaml").read_text()
     every_s = max(arguments.step, arguments.hours * 3600 / 20000)
     scenarios = text[text.index("scenarios:"):text.index("variants:")].replace(

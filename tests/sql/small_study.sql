@@ -112,6 +112,11 @@ INSERT INTO sumo_collision (replication_id, number, time_s, collider, victim, su
 SELECT replication_id, number, time_s, 'flow.' || 10 * number, 'flow.' || (10 * number + 1),
        'collision', 'crash' FROM crash;
 
+-- How far and where a side or a rear was pushed in.
+UPDATE crash_vehicle SET intrusion_m = 0.05 + 0.04 * (crash_id % 7),
+    intrusion_zone = CASE contact_side WHEN 'rear' THEN 'rear' ELSE iif(crash_id % 3, 'door', 'rear_wheel') END,
+    max_50ms_y_g = 2.0 + crash_id % 5, asi_1 = 0.5 + 0.1 * (crash_id % 4), delta_v_y_m_s = 0.75 * delta_v_m_s
+WHERE frontal = 0 AND olc_status <> 'simulation_failed';
 -- Who erred, what AEB did, where and how heavy; of the last replication nothing is known.
 UPDATE crash_vehicle SET mass_kg = CASE role WHEN 'a' THEN 1500.0 ELSE 1200.0 + 25.0 * (crash_id % 5) END,
        lane = CASE WHEN scenario_id = 11 THEN ':centre_' || (crash_id % 3) || '_0' ELSE 'road_' || (crash_id % 2) END,

@@ -13,7 +13,7 @@ mkdir -p "$seen"
 # The small study with pulses in it.
 cp "$db" "$seen/study.db"
 db=$seen/study.db
-for name in small_study_pulses small_members; do
+for name in small_study_pulses small_members small_evidence; do
     sqlite3 -batch -bail "$db" <"$(dirname "$0")/$name.sql"
 done
 # With sanitizers their runtime has to be there before the stock shell's first allocation.
@@ -72,6 +72,12 @@ expect "crashes above 15 g of crashes_above_severity" \
     "$(one "SELECT group_concat(n, ' ') FROM (SELECT count(DISTINCT crash_id) AS n FROM frontal_vehicle WHERE olc_g > 15 GROUP BY variant_id ORDER BY variant_id)")"
 expect "vehicles of validity" "$(sum 4 validity)" \
     "$(one 'SELECT count(*) FROM crash_vehicle WHERE frontal = 1')"
+expect "vehicles of validity_classes" "$(sum 3 validity_classes)" \
+    "$(sqlite3 -readonly "$db" 'SELECT count(*) FROM crash_vehicle WHERE frontal = 1')"
+expect "vehicles of struck_vehicles" "$(sum 4 struck_vehicles)" \
+    "$(sqlite3 -readonly "$db" 'SELECT count(*) FROM crash_vehicle WHERE frontal = 0 AND delta_v_m_s IS NOT NULL')"
+expect "vehicles of vehicle_classes" "$(sum 3 vehicle_classes)" \
+    "$(sqlite3 -readonly "$db" 'SELECT count(*) FROM crash_vehicle')"
 expect "vehicles with one reason of validity_reasons" "$(sum 4 validity_reasons)" \
     "$(one "SELECT count(*) FROM crash_vehicle WHERE frontal = 1 AND validity <> 'inside' AND instr(validity, ',') = 0")"
 expect "treatment crashes of paired_replications" "$(sum 6 paired_replications)" \
@@ -114,6 +120,8 @@ expect "cars of function_at_contact" "$(sum 5 function_at_contact)" \
     "$(one "SELECT count(*) FROM crash_function AS f JOIN crash AS c ON c.id = f.crash_id WHERE c.crash_type LIKE 'front-%'")"
 expect "cars of crash_partners" "$(sum 6 crash_partners)" \
     "$(one 'SELECT count(*) FROM crash_vehicle WHERE frontal = 1 AND mass_kg IS NOT NULL')"
+expect "vehicles of struck_sides" "$(sum 5 struck_sides)" \
+    "$(one 'SELECT count(*) FROM crash_vehicle WHERE frontal = 0 AND intrusion_m IS NOT NULL')"
 expect "last rows of convergence" \
     "$(shell <"$queries/convergence.sql" | awk -F'|' '$2 == 7 { print $3 "|" $5 }' | paste -sd' ')" \
     "$(one "SELECT group_concat(frontal_crashes || '|' || round(olc_median_g, 2), ' ') FROM

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The lines README gives for Python, R and DuckDB, run on the invented study: each prints the medians
+"""The lines db/README.md gives for Python, R and DuckDB, run on the invented study: each prints the medians
 that the view olc_by_variant has. A tool that is not installed, or lacks its package, is named."""
 import argparse
 import os
@@ -28,7 +28,7 @@ def lines_of(language, mark):
     for block in re.findall(rf"^```{language}\n(.*?)^```", text, re.M | re.S):
         if mark in block:
             return block.replace("demo.db", arguments.db).replace("build/crashpulse_sql.so", arguments.extension)
-    raise AssertionError(f"README has no lines of {language} with {mark}")
+    raise AssertionError(f"db/README.md has no lines of {language} with {mark}")
 
 
 def check(command, lines, ending):

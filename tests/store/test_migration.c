@@ -3,6 +3,7 @@
 
 #include "pulse/pulse_codec.h"
 #include "store/inspection.h"
+#include "store/stored_pulse.h"
 
 #include <sys/wait.h>
 
@@ -257,7 +258,9 @@ static void first_codec_is_read(void **state)
     assert_ok(cp_store_open(f->db, CP_STORE_WRITE, &store, &error), &error);
     assert_true(number_of(store, "SELECT count(*) FROM pulse WHERE codec = 1") == 10);
     double id = number_of(store, "SELECT min(id) FROM crash");
-    assert_ok(cp_result_pulse_read(store, (int64_t)id, "a", &pulse, &error), &error);
+    bool there = false;
+    assert_ok(cp_stored_pulse_read(store, (int64_t)id, NULL, "a", &pulse, &there, &error), &error);
+    assert_true(there);
     assert_int_equal(pulse.sample_count, 401);
     assert_true(fabs(pulse.channel[CP_CHANNEL_VX][0] - 2.815) < 1e-9);
     assert_true(fabs(pulse.channel[CP_CHANNEL_VX][100] - 0.898) < 1e-9);

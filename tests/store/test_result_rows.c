@@ -2,6 +2,7 @@
 #include "store/fixture.h"
 
 #include "pulse/pulse_codec.h"
+#include "store/stored_pulse.h"
 
 #define MEDIAN "SELECT coalesce(olc_median_g, -1) FROM olc_by_variant WHERE variant = 'baseline'"
 
@@ -105,11 +106,14 @@ static void pulse_comes_back(void **state)
     vehicle->sample_interval_s = 0.001;
     assert_ok(cp_result_rows_commit(store, &results, &error), &error);
     int64_t crash_id = results.replication_id * 16384;
-    assert_ok(cp_result_pulse_read(store, crash_id, "b", &back, &error), &error);
+    bool there = false;
+    assert_ok(cp_stored_pulse_read(store, crash_id, NULL, "b", &back, &there, &error), &error);
+    assert_true(there);
     assert_int_equal(back.sample_count, 201);
     assert_true(fabs(back.channel[CP_CHANNEL_VX][200] + 1.5) < 1e-9);
     cp_pulse_destroy(&back);
-    assert_int_equal(cp_result_pulse_read(store, crash_id, "a", &back, &error), CP_BAD_INPUT);
+    assert_ok(cp_stored_pulse_read(store, crash_id, NULL, "a", &back, &there, &error), &error);
+    assert_false(there);
     cp_pulse_destroy(&pulse);
     cp_result_rows_destroy(&results);
     cp_store_close(store);
@@ -151,6 +155,10 @@ static void how_a_crash_came_is_stored(void **state)
     add_crash(&results, 1, 20, 20);
     add_crash(&results, 2, 20, 20); // nothing known of it
     fill_participants(&results.crash[0]);
+    cp_crash_vehicle_row *struck = &results.crash[0].vehicle[1];
+    struck->intrusion_m = 0.25;
+    struck->intrusion_zone = "rear_wheel";
+    struck->severity.max_50ms_y_g = 7.5;
     assert_ok(cp_result_rows_commit(store, &results, &error), &error);
     assert_true(number_of(store,
                           "SELECT sum(error_count) FROM crash_vehicle WHERE crash_id % 16384 "
@@ -162,6 +170,9 @@ static void how_a_crash_came_is_stored(void **state)
                           "SELECT count(*) FROM crash_vehicle WHERE mass_kg = 1401 AND role = "
                           "'b' AND lane = ':j_1_2_0' AND edge = ':j_1_2' AND junction IS "
                           "NULL") == 1);
+    assert_true(number_of(store,
+                          "SELECT count(*) FROM crash_vehicle WHERE intrusion_m = 0.25 AND role = "
+                          "'b' AND intrusion_zone = 'rear_wheel' AND max_50ms_y_g = 7.5") == 1);
     assert_true(number_of(store, "SELECT count(*) FROM crash_cause WHERE driver_error = "
                                  "'failed_to_see' AND role = 'a' AND causes = 1 AND began_s = "
                                  "2.5") == 1);

@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "study/plan.h"
+#include "study/study_file.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -98,7 +98,7 @@ static void states_come_in_our_frame(void **unused)
     assert_string_equal(sumo_bridge_type_id(first->type), "exact");
     assert_string_equal(sumo_bridge_lane_id(first->lane), "east_0");
     assert_string_equal(sumo_bridge_lane_id(oncoming->lane), "west_0");
-    assert_string_equal(sumo_bridge_vehicle_id(SUMO_BRIDGE_NONE), "");
+    assert_string_equal(sumo_bridge_vehicle_id(CP_NO_NUMBER), "");
     sumo_bridge_stop();
 }
 
@@ -107,7 +107,7 @@ static void vehicles_are_announced_when_they_come_and_go(void **unused)
     (void)unused;
     start(1, 0.1);
     size_t come = 0, there = 0, count = 0;
-    uint32_t numbers[3] = {SUMO_BRIDGE_NONE, SUMO_BRIDGE_NONE, SUMO_BRIDGE_NONE};
+    uint32_t numbers[3] = {CP_NO_NUMBER, CP_NO_NUMBER, CP_NO_NUMBER};
     while (sumo_bridge_time_s() < 100.0 && (come < 3 || there > 0)) {
         const cp_vehicle_state *states = step(&count);
         const uint32_t *vehicles;
@@ -278,8 +278,8 @@ static void every_lane_has_random_numbers_of_its_own(void **unused)
     (void)unused;
     char path[1024], net[1024], words[64];
     cp_error error = {0};
-    snprintf(path, sizeof path, "%s/sumo_scenarios/town/town.sumocfg", getenv("CRASHPULSE_SOURCE"));
-    snprintf(net, sizeof net, "%s/sumo_scenarios/town/town.net.xml", getenv("CRASHPULSE_SOURCE"));
+    snprintf(path, sizeof path, "%s/sumo_scenarios/town/town.sumocfg", getenv("CRASHPULSE_BUILD"));
+    snprintf(net, sizeof net, "%s/sumo_scenarios/town/town.net.xml", getenv("CRASHPULSE_BUILD"));
     unsigned lanes = lanes_of(net);
     assert_true(lanes > 64);
     if (sumo_bridge_start(path, 1, 0.1, NULL, 0, &error) != CP_OK)
@@ -297,7 +297,7 @@ static void headings_and_speeds_are_those_of_sumo(void **unused)
     char path[1024];
     cp_error error = {0};
     size_t count, read = 0, turning = 0, standing = 0;
-    snprintf(path, sizeof path, "%s/sumo_scenarios/town/town.sumocfg", getenv("CRASHPULSE_SOURCE"));
+    snprintf(path, sizeof path, "%s/sumo_scenarios/town/town.sumocfg", getenv("CRASHPULSE_BUILD"));
     if (sumo_bridge_start(path, 1, 0.1, NULL, 0, &error) != CP_OK)
         fail_msg("%s", error.text);
     for (int k = 0; k < 900; k++) {

@@ -39,7 +39,7 @@ static uint32_t number_of(const cp_traffic *traffic, const char *id)
         if (strcmp(cp_traffic_vehicle_id(traffic, motions[k].after.vehicle), id) == 0)
             return motions[k].after.vehicle;
     fail_msg("no vehicle %s", id);
-    return SUMO_BRIDGE_NONE;
+    return CP_NO_NUMBER;
 }
 
 static void exposure_is_what_was_driven(void **unused)
@@ -105,9 +105,9 @@ static void places_can_be_asked_for(void **unused)
         assert_true(state.lane_position_m == 0.0);
         assert_int_equal(cp_traffic_place(traffic, &state, &error), CP_OK);
         assert_true(state.lane_position_m == with_places[k].lane_position_m);
-        assert_string_equal(sumo_bridge_lane_id(state.lane), k == 0   ? "east_0"
-                                                             : k == 1 ? "north_0"
-                                                                      : "west_0");
+        assert_string_equal(cp_traffic_lane_id(traffic, state.lane), k == 0   ? "east_0"
+                                                                     : k == 1 ? "north_0"
+                                                                              : "west_0");
         assert_true(state.front_x_m == with_places[k].front_x_m);
         assert_true(state.speed_m_s == with_places[k].speed_m_s);
     }

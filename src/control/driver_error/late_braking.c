@@ -170,7 +170,7 @@ static cp_status brake(late_braking *self, const cp_control_context *context, dr
 {
     double end_s = cp_traffic_time_s(self->traffic) + cp_traffic_step_length_s(self->traffic);
     cp_brake profile = {own->look_up_s, context->parameter[JERK_M_S3],
-                        context->parameter[DECELERATION_M_S2]};
+                        context->parameter[DECELERATION_M_S2], 0.0};
     double loss_m_s = cp_brake_speed_loss_m_s(&profile, end_s) -
                       cp_brake_speed_loss_m_s(&profile, own->commanded_until_s);
     own->commanded_until_s = end_s;

@@ -117,7 +117,8 @@ static cp_status brake(cp_reacting_driver *driver, const cp_oncoming_reaction_se
                        cp_actuation *actuation, cp_error *error)
 {
     double end_s = cp_traffic_time_s(traffic) + cp_traffic_step_length_s(traffic);
-    cp_brake profile = {driver->brake_start_s, settings->jerk_m_s3, settings->deceleration_m_s2};
+    cp_brake profile = {driver->brake_start_s, settings->jerk_m_s3, settings->deceleration_m_s2,
+                        0.0};
     double loss_m_s = cp_brake_speed_loss_m_s(&profile, end_s) -
                       cp_brake_speed_loss_m_s(&profile, driver->commanded_until_s);
     if (loss_m_s <= 0.0)

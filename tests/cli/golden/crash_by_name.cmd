@@ -1,0 +1,1 @@
+"$crashpulse" crash honda_acord_2014 --speed 50

@@ -1,0 +1,1 @@
+"$crashpulse" compare no_such.db --log-format=xml

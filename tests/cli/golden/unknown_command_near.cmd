@@ -1,0 +1,1 @@
+"$crashpulse" compear "$db"

@@ -1,0 +1,1 @@
+"$crashpulse" run study.yaml --jobz 2 --db x.db

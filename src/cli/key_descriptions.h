@@ -53,6 +53,11 @@
     X("vehicles.types", "", "by vehicle type of SUMO")                                             \
     X("vehicles.types[].type", "a vehicle type of a scenario", "")                                 \
     X("vehicles.types[].model", "a shipped vehicle, or a file", "")                                \
+    X("vehicles.fleet", "default", "draw every car from a vehicle class (db/vehicles/fleet)")      \
+    X("vehicles.market", "", "shares of classes within a SUMO vehicle type; their sum is 1")       \
+    X("vehicles.market[].type", "a vehicle type of a scenario", "")                                \
+    X("vehicles.market[].class", "a vehicle class", "")                                            \
+    X("vehicles.market[].share_1", "0 to 1", "")                                                   \
     X("counterfactual", "", "of design counterfactual")                                            \
     X("counterfactual.checkpoint_interval_s", "0.5 to 60; default 2", "time between checkpoints")  \
     X("counterfactual.checkpoints", "1 to 200; default 20", "checkpoints kept at a time")          \
@@ -210,6 +215,20 @@
     X("classes[].barrier.width_m", "", "")                                                         \
     X("classes[].barrier.depth_m", "", "")                                                         \
     X("classes[].barrier.corner_radius_m", "", "")                                                 \
+    X("classes[].barrier.mass_kg", "default: it does not move", "of a barrier that moves")         \
+    X("classes[].barrier.yaw_inertia_kg_m2", "", "of a barrier that moves")                        \
+    X("classes[].barrier.face_m", "default: rigid", "depth of a face that gives way")              \
+    X("classes[].barrier.face_kn", "", "force at which it does")                                   \
+    X("classes[].barrier.face_bumper_m", "", "depth of the bumper on its face")                    \
+    X("classes[].barrier.face_bumper_kn", "", "force at which that gives way")                     \
+    X("classes[].struck", "side, rear", "where the judged car is struck")                          \
+    X("classes[].struck_speeds_km_h", "one for each speed; default 0", "its own forward speed")    \
+    X("classes[].at_mm", "", "middle of what strikes, from its centre of gravity")                 \
+    X("classes[].at_sweep", "", "in place of at_mm")                                               \
+    X("classes[].at_sweep.from_mm", "", "")                                                        \
+    X("classes[].at_sweep.to_mm", "", "")                                                          \
+    X("classes[].at_sweep.count", "", "")                                                          \
+    X("classes[].struck_forces_1", "default 1", "times the forces of its side and rear")           \
     X("classes[].against", "same, a shipped vehicle, a file", "in place of a barrier")             \
     X("classes[].compare", "", "what is compared")                                                 \
     X("classes[].compare[].quantity", "a quantity (db/validation/README.md)", "")                  \

@@ -118,7 +118,7 @@ static const struct argp ARGP = {
            "Examples:\n"
            "  crashpulse export demo.db --as iso-mme --output tests --where \"olc_g > 30\"\n"
            "  crashpulse export demo.db --as lsdyna --crash 4711 --output pulse.k\n"
-           "  crashpulse export demo.db --as sumo-poi --output crashes.add.xml\n"
+           "  crashpulse export demo.db --as sumo-poi --scenario left_turn -o a.xml\n"
            "  crashpulse export demo.db --as geojson --network town.net.xml -o sites.json\n"
            "  crashpulse export v10146/ --as lsdyna --units m-s-kg --output v10146.k\n",
     .children = CHILDREN,

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#define _GNU_SOURCE // syncfs
+
 #include "core/output_folder.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,12 +33,51 @@ cp_status cp_output_folder_begin(const char *path, cp_output_folder *folder, cp_
     return cp_fail(error, CP_IO_FAILED, "%s: cannot be created: %s", path, strerror(why));
 }
 
+cp_status cp_output_folder_create(const char *path, FILE **file, cp_error *error)
+{
+    int descriptor = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (descriptor < 0)
+        return cp_fail(error, CP_IO_FAILED, "%s: cannot be written: %s", path, strerror(errno));
+    *file = fdopen(descriptor, "wb");
+    if (*file != NULL)
+        return CP_OK;
+    close(descriptor);
+    return cp_fail_memory(error, path);
+}
+
+cp_status cp_output_folder_close(const char *path, FILE *file, cp_error *error)
+{
+    errno = 0;
+    bool good = fflush(file) == 0 && ferror(file) == 0;
+    int why = errno;
+    if (fclose(file) != 0 && good) {
+        good = false;
+        why = errno;
+    }
+    return good ? CP_OK
+                : cp_fail(error, CP_IO_FAILED, "%s: cannot be written: %s", path,
+                          strerror(why != 0 ? why : EIO));
+}
+
+// Everything of the folder's disk on it.
+static bool is_on_disk(const char *path)
+{
+    int descriptor = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0)
+        return false;
+    bool good = syncfs(descriptor) == 0;
+    int why = errno;
+    close(descriptor);
+    errno = why;
+    return good;
+}
+
 cp_status cp_output_folder_commit(cp_output_folder *folder, cp_error *error)
 {
     // With the rights that a new folder has.
     mode_t mask = umask(0);
     umask(mask);
-    if (chmod(folder->temporary, 0777 & ~mask) == 0 &&
+    if (is_on_disk(folder->temporary) && chmod(folder->temporary, 0777 & ~mask) == 0 &&
         rename(folder->temporary, folder->path) == 0) {
         folder->temporary[0] = '\0';
         return CP_OK;

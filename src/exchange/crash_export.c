@@ -136,15 +136,15 @@ static cp_status write_curve_file(const exporting *self, const cp_selected_crash
                                   cp_error *error)
 {
     char path[PATH_MAX], name[64];
-    cp_file_stream stream;
+    FILE *file = NULL;
     crash_name(crash, name);
     if (snprintf(path, sizeof path, "%s/%s.k", self->folder.temporary, name) >= PATH_MAX)
         return cp_fail(error, CP_BAD_INPUT, "%.200s...: the path is too long", path);
-    cp_status status = cp_file_stream_begin(path, &stream, error);
+    cp_status status = cp_output_folder_create(path, &file, error);
     if (status != CP_OK)
         return status;
-    write_curves(stream.file, self->options->units, crash);
-    return cp_file_stream_commit(&stream, error);
+    write_curves(file, self->options->units, crash);
+    return cp_output_folder_close(path, file, error);
 }
 
 static cp_status write_crash(exporting *self, const cp_selected_crash *crash, cp_error *error)

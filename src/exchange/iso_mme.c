@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/iso_mme.h"
 
-#include "core/file_stream.h"
+#include "core/output_folder.h"
 #include "core/safe_text.h"
 
 #include <ctype.h>
@@ -165,18 +165,18 @@ typedef struct part {
 
 static cp_status write_file(const char *path, const part *own, char kind, cp_error *error)
 {
-    cp_file_stream stream;
-    cp_status status = cp_file_stream_begin(path, &stream, error);
+    FILE *file = NULL;
+    cp_status status = cp_output_folder_create(path, &file, error);
     if (status != CP_OK)
         return status;
     if (kind == 't')
-        write_test(stream.file, own->test);
+        write_test(file, own->test);
     else if (kind == 'l')
-        write_list(stream.file, own->list, own->count);
+        write_list(file, own->list, own->count);
     else
-        write_channel(stream.file, &own->list[own->number - 1],
+        write_channel(file, &own->list[own->number - 1],
                       &own->test->object[own->list[own->number - 1].object].record->pulse);
-    return cp_file_stream_commit(&stream, error);
+    return cp_output_folder_close(path, file, error);
 }
 
 static cp_status make_folder(const char *path, cp_error *error)

@@ -471,9 +471,12 @@ static cp_status take_pulse(reading *self, cp_error *error)
 // '1' for "1", "a" or nothing.
 static char object_of(const char *vehicle)
 {
-    if (vehicle == NULL || strcmp(vehicle, "a") == 0)
-        return '1';
-    return strcmp(vehicle, "b") == 0 ? '2' : vehicle[0];
+    char object = '1';
+    if (vehicle != NULL && strcmp(vehicle, "b") == 0)
+        object = '2';
+    else if (vehicle != NULL && strcmp(vehicle, "a") != 0)
+        object = vehicle[0];
+    return object;
 }
 
 cp_status cp_iso_mme_read(const cp_pulse_request *request, cp_pulse_record *record, cp_error *error)

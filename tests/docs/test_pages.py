@@ -19,7 +19,7 @@ source, build = pathlib.Path(arguments.source).resolve(), pathlib.Path(arguments
 
 PAGES = ["README.md", "CONTRIBUTING.md", "sumo_scenarios/README.md", "db/README.md", "reports/README.md",
          "db/vehicles/README.md", "db/field/README.md", "db/reference/README.md", "db/validation/README.md",
-         "src/README.md", "src/control/README.md", "reports/example/README.md", "SECURITY.md"]
+         "src/README.md", "src/control/README.md", "src/exchange/README.md", "reports/example/README.md", "SECURITY.md"]
 PAGES += [f"sumo_scenarios/{name}/README.md" for name in
           ("adas_comparison", "crossing", "demo", "head_on_drift", "head_on_overtaking", "left_turn", "null_treatment",
            "town")]

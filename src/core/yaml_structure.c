@@ -143,7 +143,9 @@ cp_status cp_yaml_structure_check(const char *name, const cp_yaml_line *lines, s
         size_t length = strlen(line->path);
         bool has_child = line->scalar == NULL && k + 1 < count &&
                          strncmp(lines[k + 1].path, line->path, length) == 0;
-        char next = has_child ? lines[k + 1].path[length] : '\0';
+        char next = '\0';
+        if (has_child)
+            next = lines[k + 1].path[length];
         if (next != '.' && next != '[')
             next = '\0';
         if (line->scalar != NULL && line->scalar[0] != '\0' && !is_scalar(value) && length > 0)

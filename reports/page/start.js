@@ -6,7 +6,7 @@
 const drawings = [rateFigure, forestFigure, aboveFigure, aboveDeltaVFigure, ecdfFigure, deltaVFigure, differenceFigure, pairedFigure, scatterFigure, mapFigure, siteFigure, flowFigure, benefitFigure, riskFigure, corridorFigure, convergenceFigure, ...doseFigures, gallery].filter(Boolean);
 function update() {
   cards();
-  [exposureTable, quantileTable, contrastTable, injuryTable, precisionTable, validityTable, scorecardTable].forEach(draw => draw());
+  [exposureTable, quantileTable, contrastTable, injuryTable, precisionTable, validityTable, evidenceTable, scorecardTable].forEach(draw => draw());
   drawings.forEach(draw => draw());
 }
 

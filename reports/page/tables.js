@@ -135,6 +135,17 @@ const scorecardTable = tableSection("scorecard", null, function () {
   };
 });
 
+// Which tests speak for the severities: frontal vehicles of each variant by the class around them.
+const evidenceTable = tableSection("evidence", "validity_classes", function () {
+  const total = d3.rollup(data.about.evidence, rows => d3.sum(rows, row => row.vehicles), row => row.variant);
+  return {
+    caption: "Frontally struck vehicles of the whole study. Errors are those of the class, common to all of its crashes; none: outside, its error unknown.",
+    columns: [{ name: "variant", text: true }, { name: "class of tests", text: true }, { name: "vehicles" }, { name: "share" }, { name: "error of severity" }, { name: "of OLC, g" }],
+    rows: data.about.evidence.map(row => [row.variant, readable(row.evidence_class), integer(row.vehicles), percent(row.vehicles / total.get(row.variant)),
+      missing(row.error_1) ? "–" : percent(row.error_1), missing(row.error_g) ? "–" : fixed(row.error_g, 1)])
+  };
+});
+
 const validityTable = tableSection("validity", "validity", function () {
   const counts = new Map();
   d3.range(data.validity_counts.length).forEach(k => {

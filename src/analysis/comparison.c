@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/comparison.h"
 
+#include "analysis/class_error.h"
 #include "analysis/counterfactual.h"
 #include "analysis/exceedance_figures.h"
 #include "analysis/field_comparison.h"
@@ -326,6 +327,23 @@ static cp_status contrast_injuries(const cp_study_data *data, const cp_replicati
     return status;
 }
 
+// What the errors of the classes of tests leave open.
+static cp_status contrast_class_errors(const cp_study_data *data, const cp_replication_set set[2],
+                                       cp_slice slice, cp_contrast_figures *figures,
+                                       cp_error *error)
+{
+    cp_class_error found;
+    cp_status status = cp_class_error_of(data, set, slice, &found, error);
+    if (status != CP_OK)
+        return status;
+    for (size_t g = 0; g < 2; g++) {
+        figures->class_vehicles[g] = found.vehicles[g];
+        figures->class_without[g] = found.without[g];
+    }
+    figures->class_error_g = found.error_g;
+    return CP_OK;
+}
+
 static cp_status contrast_variant(const cp_study_data *data, const cp_comparison *comparison,
                                   const cp_comparison_options *options,
                                   cp_contrast_figures *figures, cp_error *error)
@@ -358,6 +376,8 @@ static cp_status contrast_variant(const cp_study_data *data, const cp_comparison
     if (status == CP_OK)
         status = cp_model_uncertainty_contrast(data, options->ensemble, set, slice, &resampling,
                                                figures, error);
+    if (status == CP_OK && options->ensemble)
+        status = contrast_class_errors(data, set, slice, figures, error);
     if (status == CP_OK)
         status = bound_severity(data, set, slice, &resampling, figures, error);
     if (status == CP_OK)

@@ -126,6 +126,10 @@ typedef struct cp_contrast_figures {
                                     outside validity unknown */
     cp_model_part median_model;  /* of the difference of OLC medians; sets 0 without an ensemble */
     cp_model_part delta_model;   /* likewise of Cliff's delta of OLC */
+    size_t class_vehicles[2];    /* with the errors of classes (class_error.h): of baseline and
+                                    treatment; 0 when not asked for, as the next */
+    size_t class_without[2];     /* of these with no error that is known */
+    double class_error_g;        /* standard error of a difference of mean OLC */
     cp_benefit_figures *benefit; /* one a risk function */
     struct cp_field_contrast *field; /* weighted as a field; NULL: none */
 } cp_contrast_figures;

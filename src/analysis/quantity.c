@@ -357,6 +357,12 @@ static void add_model_of_contrast(cp_quantities *list, const cp_contrast_figures
     const writer w = {list, MODEL_SECTION, CP_SCOPE_ALL, 1.0};
     add_model_part(&w, &MEDIAN, &figures->median_model);
     add_model_part(&w, &DELTA, &figures->delta_model);
+    if (figures->class_vehicles[0] == 0 || isnan(figures->class_error_g))
+        return;
+    add(&w, "olc_class_error_g", "  standard error of a difference of means, by classes of tests",
+        2, cp_estimate_of(figures->class_error_g));
+    add(&w, "olc_class_unknown", "    vehicles without a class, their error unknown", 0,
+        counted(figures->class_without[0] + figures->class_without[1]));
 }
 
 void cp_quantities_of_contrast(const cp_study_data *data, const cp_contrast_figures *figures,

@@ -122,6 +122,12 @@ static cp_study_vehicle vehicle_of(const cp_row *row)
     return vehicle;
 }
 
+static cp_status read_evidence(void *context, const cp_row *row, cp_error *error)
+{
+    cp_study_data *data = context;
+    return read_text(row, &data->evidence, &data->evidence_count, error);
+}
+
 static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
 {
     cp_study_data *data = context;
@@ -129,6 +135,11 @@ static cp_status read_vehicle(void *context, const cp_row *row, cp_error *error)
     if (!vehicle)
         return cp_fail_memory(error, ROWS);
     *vehicle = vehicle_of(row);
+    const cp_cell *evidence = &row->cell[10 + CP_PREDICTOR_COUNT];
+    vehicle->class_error_g = evidence[1].real;
+    while (evidence->type == CP_CELL_TEXT && vehicle->evidence + 1 < data->evidence_count &&
+           strcmp(data->evidence[vehicle->evidence], evidence->text) != 0)
+        vehicle->evidence++;
     data->frontal_vehicle_count += vehicle->frontal;
     return CP_OK;
 }
@@ -257,7 +268,8 @@ static cp_status read_pair(void *context, const cp_row *row, cp_error *error)
     ".closing_speed_m_s, w.max_50ms_g, w.asi_1, e.delta_v_without_rebound_m_s"
 
 static const char VEHICLES[] = CP_STUDY_PLACES "SELECT c.place, " VEHICLE_CELLS(
-    "c") " FROM crash_vehicle AS w JOIN c ON c.id = w.crash_id JOIN delta_v_without_rebound AS e"
+    "c") ", w.evidence_class, w.class_error_g FROM crash_vehicle AS w JOIN c ON c.id = w.crash_id "
+         "JOIN delta_v_without_rebound AS e"
          " ON e.crash_id = w.crash_id AND e.role = w.role JOIN o ON o.validity = w.validity"
          " ORDER BY c.place, w.role";
 
@@ -304,6 +316,9 @@ static cp_status read_rows(cp_store *store, cp_study_data *data, cp_error *error
          read_replication},
         {CP_STUDY_PLACES "SELECT crash_type FROM t ORDER BY place", read_crash_type},
         {CP_STUDY_PLACES "SELECT validity FROM o ORDER BY place", read_validity},
+        {"SELECT DISTINCT evidence_class FROM crash_vehicle WHERE evidence_class IS NOT NULL"
+         " ORDER BY evidence_class",
+         read_evidence},
         {CP_STUDY_PLACES
          "SELECT replication, type, frontal, validity = 'inside', id, time_s, x_m, y_m"
          " FROM c ORDER BY place",
@@ -338,6 +353,11 @@ static cp_status read_about(cp_store *store, cp_study_data *data, cp_error *erro
         {"vehicle_models",
          "SELECT name, hash FROM vehicle_model WHERE name IN (SELECT DISTINCT vehicle_model FROM "
          "crash_vehicle) ORDER BY name"},
+        {"evidence",
+         "SELECT v.name AS variant, coalesce(w.evidence_class, 'none') AS evidence_class,"
+         " count(*) AS vehicles, avg(w.class_error_1) AS error_1, avg(w.class_error_g) AS error_g"
+         " FROM crash_vehicle AS w JOIN variant AS v ON v.id = w.variant_id WHERE w.frontal = 1"
+         " GROUP BY v.number, w.evidence_class ORDER BY v.number, vehicles DESC, 2"},
         {"scenarios", "SELECT name, sumocfg, sumo_options, driver_errors FROM scenario"
                       " ORDER BY number"},
         {"variants", "SELECT name, is_baseline, functions FROM variant ORDER BY number"},
@@ -403,6 +423,9 @@ void cp_study_data_destroy(cp_study_data *data)
         free(data->crash_type[k]);
     for (size_t k = 0; k < data->validity_count; k++)
         free(data->validity[k]);
+    for (size_t k = 0; k < data->evidence_count; k++)
+        free(data->evidence[k]);
+    free(data->evidence);
     for (size_t k = 0; k < data->risk_count; k++) {
         free(data->risk[k].name);
         free(data->risk[k].level);

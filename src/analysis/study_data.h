@@ -99,6 +99,8 @@ typedef struct cp_study_vehicle {
     double angle_rad;
     size_t validity;                      /* index into validity texts; 0 is "inside" */
     double predictor[CP_PREDICTOR_COUNT]; /* NAN when unknown */
+    size_t evidence;      /* index into the classes of tests; of a baseline's or own crash only */
+    double class_error_g; /* of its class; NAN without one, or when that error is not known */
 } cp_study_vehicle;
 
 /* A baseline's crash under a treatment, in the counterfactual design. */
@@ -149,6 +151,8 @@ typedef struct cp_study_data {
     size_t vehicle_count;
     cp_study_vehicle *vehicle; /* two a crash, by crash and role */
     size_t frontal_vehicle_count;
+    size_t evidence_count;
+    char **evidence; /* classes of tests that occur, in the order of the alphabet */
     size_t pair_count;
     cp_study_pair *pair; /* by crash and variant */
     size_t treated_count;

@@ -61,6 +61,58 @@ static cp_status add_vehicle(cp_study *study, const char *type, const char *mode
     return complete ? CP_OK : cp_fail_memory(error, "vehicles");
 }
 
+// The vehicles of one row; a file among them is read once, to see whether it is one.
+static cp_status add_listed(cp_assessment *self, const cp_listed_configuration *row, cp_error *error)
+{
+    cp_study *study = &self->study;
+    cp_vehicle_model model;
+    cp_status status = CP_OK;
+    for (int v = 0; status == CP_OK && v < 2; v++) {
+        const char *name = row->vehicle[v];
+        size_t before = study->vehicle_count;
+        if (name == NULL)
+            continue;
+        status = add_vehicle(study, name, name, self->request.configurations_path, error);
+        bool is_new = status == CP_OK && study->vehicle_count > before;
+        if (!is_new || study->vehicles[before].model_path == NULL)
+            continue;
+        status = cp_vehicle_model_load(study->vehicles[before].model_path, &model, error);
+        if (status != CP_OK) {
+            free(study->vehicles[before].type);
+            free(study->vehicles[before].model_path);
+            study->vehicle_count = before;
+        }
+    }
+    return status;
+}
+
+// Rows whose vehicles are none are left out, the first of them ends it where --strict is given.
+static cp_status gather_listed(cp_assessment *self, cp_error *error)
+{
+    const cp_assessment_request *a = &self->request;
+    cp_configuration_list *list = &self->configurations;
+    cp_status status = CP_OK;
+    for (size_t k = 0; status == CP_OK && k < list->count; k++) {
+        cp_error why = {0}, told = {0};
+        size_t line = list->row[k].line, length = strlen(a->configurations_path);
+        status = add_listed(self, &list->row[k], &why);
+        if (status == CP_OK)
+            continue;
+        // What is wrong with a name is told with the list's own name in front.
+        bool named = strncmp(why.text, a->configurations_path, length) == 0;
+        cp_fail(&told, status, "%s:%zu%s%s", a->configurations_path, line, named ? "" : ": ",
+                why.text + (named ? length : 0));
+        if (status == CP_BAD_INPUT && !a->strict)
+            status = cp_configuration_list_leave_out(list, k, told.text, error);
+        else
+            *error = told;
+    }
+    cp_configuration_list_close_up(list);
+    if (status == CP_OK && list->count == 0 && list->bad_count > 0)
+        status = cp_fail(error, CP_BAD_INPUT, "%s", list->bad[0]);
+    return status;
+}
+
 static cp_status gather_vehicles(cp_assessment *self, cp_error *error)
 {
     const cp_assessment_request *a = &self->request;
@@ -73,12 +125,8 @@ static cp_status gather_vehicles(cp_assessment *self, cp_error *error)
                               : cp_fail_memory(error, "vehicles");
         free(type);
     }
-    for (size_t k = 0; status == CP_OK && k < self->configurations.count; k++)
-        for (int v = 0; status == CP_OK && v < 2; v++) {
-            const char *model = self->configurations.row[k].vehicle[v];
-            if (model != NULL)
-                status = add_vehicle(study, model, model, a->configurations_path, error);
-        }
+    if (status == CP_OK)
+        status = gather_listed(self, error);
     for (size_t k = 0; status == CP_OK && k < self->types.count; k++) {
         const cp_vtype *type = &self->types.type[k];
         if (type->model != NULL)

@@ -195,12 +195,12 @@ static void write_targets(FILE *file, const cp_fit *fit, const cp_calibration *c
     for (size_t t = 0; t < fit->target_count; t++) {
         for (size_t b = 0; b < fit->target[t].bound_count; b++) {
             const cp_target_bounds *bounds = &fit->target[t].bound[b];
-            const cp_target_kind *kind = &CP_TARGET_KIND[bounds->quantity];
+            const cp_target_kind *kind = cp_target_kind_of(bounds->quantity);
             double value = calibration->target[t * CP_TARGET_BOUNDS_MAX + b];
             fputs("| ", file);
             cp_text_print(file, fit->target[t].name, "");
             fprintf(file, " | %s |", kind->key);
-            if (kind->at_instant)
+            if (cp_suite_quantity_is_timed(kind->quantity))
                 fprintf(file, " %.0f |", 1e3 * bounds->at_s);
             else
                 fprintf(file, " |");

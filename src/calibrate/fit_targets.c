@@ -51,21 +51,17 @@ static cp_status read_bounds(const cp_yaml_file *file, const cp_yaml_target_boun
                              size_t row, size_t b, cp_target_bounds *bounds, cp_error *error)
 {
     char key[96];
-    int quantity = 0;
-    while (quantity < CP_TARGET_QUANTITIES &&
-           strcmp(CP_TARGET_KIND[quantity].key, yaml->quantity) != 0)
-        quantity++;
-    if (quantity == CP_TARGET_QUANTITIES)
-        return cp_yaml_fail(file, error, key_of(key, row, b, "quantity"),
-                            "must be olc_g, peak_g, crush_mm, t_v0_ms, rebound_m_s, loss_x_m_s, "
-                            "gain_away_m_s, yaw_rate_deg_s or restitution_1, found '%s'",
-                            yaml->quantity);
-    const cp_target_kind *kind = &CP_TARGET_KIND[quantity];
-    bounds->quantity = (cp_target_quantity)quantity;
-    if (kind->at_instant != (yaml->at_ms != NULL))
+    char keys[CP_TARGET_KEYS_SIZE];
+    const cp_target_kind *kind = cp_target_kind_find(yaml->quantity);
+    if (kind == NULL)
+        return cp_yaml_fail(file, error, key_of(key, row, b, "quantity"), "must be %s, found '%s'",
+                            cp_target_keys(keys), yaml->quantity);
+    bounds->quantity = kind->quantity;
+    bool at_instant = cp_suite_quantity_is_timed(kind->quantity);
+    if (at_instant != (yaml->at_ms != NULL))
         return cp_yaml_fail(file, error, key_of(key, row, b, "at_ms"), "%s %s", kind->key,
-                            kind->at_instant ? "is taken at an instant: give at_ms"
-                                             : "is of the whole crash: it has no at_ms");
+                            at_instant ? "is taken at an instant: give at_ms"
+                                       : "is of the whole crash: it has no at_ms");
     double at_ms = 0.0;
     cp_status status =
         cp_yaml_number(file, key_of(key, row, b, "at_ms"), yaml->at_ms, 1, 200, &at_ms, error);

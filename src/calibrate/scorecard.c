@@ -2,7 +2,7 @@
 #include "calibrate/scorecard.h"
 
 #include "calibrate/parallel.h"
-#include "calibrate/suite_case.h"
+#include "calibrate/suite_cases.h"
 #include "core/csv_table.h"
 #include "crash/validity.h"
 

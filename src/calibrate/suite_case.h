@@ -6,7 +6,7 @@
 #include "core/csv_table.h"
 #include "crash/vehicle_model.h"
 
-/* The cases of a class for one vehicle, and what is simulated for one of them. */
+/* One case of a class for one vehicle, what it is made of and what is simulated for it. */
 
 enum { CP_SUITE_OFFSETS_MAX = 16 };
 
@@ -62,12 +62,6 @@ int cp_suite_case_cars(const cp_suite_class *class, const cp_suite_comparison *c
 CP_MUST_CHECK cp_status cp_suite_vehicle(const char *base, const char *text,
                                          cp_vehicle_model *model, cp_error *error);
 
-/* Cases of a class for a vehicle. references: folder of the reference tables; a table that is not
- * there leaves no case and says so in skipped. Errors: CP_BAD_INPUT from a table or an opponent,
- * CP_NO_MEMORY. The caller destroys, also after an error. */
-CP_MUST_CHECK cp_status cp_suite_cases_of(const cp_suite *suite, const cp_suite_class *class,
-                                          const cp_vehicle_model *vehicle, const char *references,
-                                          cp_suite_cases *cases, cp_error *error);
 void cp_suite_cases_destroy(cp_suite_cases *cases);
 
 /* Simulate a case at offset number index. wall (when the case is of a pair and has a barrier too)

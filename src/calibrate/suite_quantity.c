@@ -37,7 +37,8 @@ cp_suite_quantity cp_suite_quantity_find(const char *name)
 
 bool cp_suite_quantity_is_timed(cp_suite_quantity quantity)
 {
-    return quantity == CP_SUITE_dvx_m_s || quantity == CP_SUITE_dvy_away_m_s;
+    return quantity == CP_SUITE_dvx_m_s || quantity == CP_SUITE_dvy_away_m_s ||
+           quantity == CP_SUITE_yaw_rate_at_deg_s;
 }
 
 bool cp_suite_quantity_is_of_pair(cp_suite_quantity quantity)
@@ -66,6 +67,14 @@ static double crush_mm(const cp_pulse *pulse)
         way_m += 0.5 * (fmax(vx_m_s[k - 1], 0.0) + fmax(vx_m_s[k], 0.0)) * pulse->sample_interval_s;
     }
     return 1e3 * way_m;
+}
+
+static double rebound_m_s(const cp_pulse *pulse)
+{
+    double largest_m_s = 0.0;
+    for (size_t k = 0; k < pulse->sample_count; k++)
+        largest_m_s = fmax(largest_m_s, -pulse->channel[CP_CHANNEL_VX][k]);
+    return largest_m_s;
 }
 
 // Change of velocity until separation in the axes of the first heading; it points against the
@@ -118,11 +127,17 @@ double cp_suite_quantity_of(const cp_suite_look *look, const cp_crash_result *re
         return crush_mm(pulse);
     case CP_SUITE_struck_mm:
         return 1e3 * result->struck[c].depth_m;
+    case CP_SUITE_t_v0_ms:
+        return 1e3 * severity->t_v0_s;
+    case CP_SUITE_rebound_m_s:
+        return rebound_m_s(pulse);
     case CP_SUITE_dvx_m_s:
         return pulse->channel[CP_CHANNEL_VX][0] - channel_at(pulse, CP_CHANNEL_VX, look->time_s);
     case CP_SUITE_dvy_away_m_s:
         return look->side_1 *
                (pulse->channel[CP_CHANNEL_VY][0] - channel_at(pulse, CP_CHANNEL_VY, look->time_s));
+    case CP_SUITE_yaw_rate_at_deg_s:
+        return look->side_1 * cp_deg_from_rad(channel_at(pulse, CP_CHANNEL_YAW_RATE, look->time_s));
     case CP_SUITE_separation_dvx_m_s:
         return -separation_change(severity).x;
     case CP_SUITE_separation_dvy_m_s:

@@ -4,7 +4,8 @@
 
 #include "crash/crash_simulation.h"
 
-/* What a suite compares: a figure of one simulated crash that a crash test has too. Losses of
+/* What a suite compares and a fit aims at (target.h): a figure of one simulated crash that a crash
+ * test has too. Losses of
  * velocity are positive, sideways is positive away from the barrier, yaw towards it. X(name, unit,
  * label for people, what it is). Separation is the end of the crash of pulse/severity.h. */
 #define CP_SUITE_QUANTITIES(X)                                                                     \
@@ -14,10 +15,13 @@
     X(crush_mm, "mm", "crush", "integral of v_x while it is positive, at most 300 ms")             \
     X(struck_mm, "mm", "static crush",                                                             \
       "how far the struck side or rear has been pushed in for good; of a front: into the cell")    \
+    X(t_v0_ms, "ms", "end of the approach", "first instant without forward speed")                 \
+    X(rebound_m_s, "m/s", "rebound", "largest backward speed along the car's x axis")              \
     X(dvx_m_s, "m/s", "loss of v_x",                                                               \
       "loss of velocity along the car's x axis at an instant; the axes turn with "                 \
       "the car, as those of an accelerometer")                                                     \
     X(dvy_away_m_s, "m/s", "v_y away", "velocity gained sideways at an instant, likewise")         \
+    X(yaw_rate_at_deg_s, "deg/s", "yaw rate at", "yaw rate at an instant")                         \
     X(separation_dvx_m_s, "m/s", "loss of v_x at separation",                                      \
       "loss of velocity at separation, axes of the first heading")                                 \
     X(separation_dvy_m_s, "m/s", "v_y away at separation",                                         \

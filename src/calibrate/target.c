@@ -6,72 +6,57 @@
 #include "crash/crash_simulation.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
-const cp_target_kind CP_TARGET_KIND[CP_TARGET_QUANTITIES] = {
-    [CP_TARGET_OLC] = {"olc_g", "g", 1.0, false},
-    [CP_TARGET_PEAK] = {"peak_g", "g", 1.0, false},
-    [CP_TARGET_CRUSH] = {"crush_mm", "mm", 1e-3, false},
-    [CP_TARGET_T_V0] = {"t_v0_ms", "ms", 1e-3, false},
-    [CP_TARGET_REBOUND] = {"rebound_m_s", "m/s", 1.0, false},
-    [CP_TARGET_LOSS_X] = {"loss_x_m_s", "m/s", 1.0, true},
-    [CP_TARGET_GAIN_AWAY] = {"gain_away_m_s", "m/s", 1.0, true},
-    [CP_TARGET_YAW_RATE] = {"yaw_rate_deg_s", "deg/s", CP_PI / 180.0, true},
-    [CP_TARGET_RESTITUTION] = {"restitution_1", "1", 1.0, false},
+static const cp_target_kind KIND[] = {
+    {"olc_g", CP_SUITE_olc_g, 1.0},
+    {"peak_g", CP_SUITE_peak_g, 1.0},
+    {"crush_mm", CP_SUITE_crush_mm, 1e-3},
+    {"t_v0_ms", CP_SUITE_t_v0_ms, 1e-3},
+    {"rebound_m_s", CP_SUITE_rebound_m_s, 1.0},
+    {"loss_x_m_s", CP_SUITE_dvx_m_s, 1.0},
+    {"gain_away_m_s", CP_SUITE_dvy_away_m_s, 1.0},
+    {"yaw_rate_deg_s", CP_SUITE_yaw_rate_at_deg_s, CP_PI / 180.0},
+    {"restitution_1", CP_SUITE_restitution_1, 1.0},
 };
+enum { KINDS = sizeof KIND / sizeof *KIND };
 
-static double extreme(const cp_pulse *pulse, cp_pulse_channel channel, double sign)
+const cp_target_kind *cp_target_kind_find(const char *key)
 {
-    double largest = 0.0;
-    for (size_t k = 0; k < pulse->sample_count; k++)
-        largest = fmax(largest, sign * pulse->channel[channel][k]);
-    return largest;
+    for (size_t k = 0; k < KINDS; k++)
+        if (strcmp(KIND[k].key, key) == 0)
+            return &KIND[k];
+    return NULL;
 }
 
-static double at_instant(const cp_pulse *pulse, cp_pulse_channel channel, double at_s)
+const cp_target_kind *cp_target_kind_of(cp_suite_quantity quantity)
 {
-    size_t k = (size_t)llround(at_s / pulse->sample_interval_s);
-    return pulse->channel[channel][k < pulse->sample_count ? k : pulse->sample_count - 1];
+    size_t k = 0;
+    while (k + 1 < KINDS && KIND[k].quantity != quantity)
+        k++;
+    return &KIND[k];
 }
 
-// Speed at which whole cars part over the speed they met with, along a's x axis.
-static double restitution(const cp_target *target, const cp_crash_result *result)
+const char *cp_target_keys(char text[CP_TARGET_KEYS_SIZE])
 {
-    double closing_m_s = result->vehicle_count * cp_m_s_from_km_h(target->speed_km_h);
-    double lost_m_s = 0.0;
-    for (int c = 0; c < result->vehicle_count; c++)
-        lost_m_s -= result->whole[c].delta_v_m_s.x;
-    return (lost_m_s - closing_m_s) / closing_m_s;
+    size_t used = 0;
+    for (size_t k = 0; k < KINDS && used < CP_TARGET_KEYS_SIZE; k++)
+        used += (size_t)snprintf(text + used, CP_TARGET_KEYS_SIZE - used, "%s%s",
+                                 k == 0           ? ""
+                                 : k + 1 == KINDS ? " or "
+                                                  : ", ",
+                                 KIND[k].key);
+    return text;
 }
 
 static double quantity_of(const cp_target *target, const cp_target_bounds *bounds,
                           const cp_crash_result *result)
 {
-    const cp_pulse *pulse = &result->pulse[0];
-    double side = target->offset_mm >= 0.0 ? 1.0 : -1.0;
-    switch (bounds->quantity) {
-    case CP_TARGET_OLC:
-        return result->severity[0].olc.status == CP_OLC_VALUE ? result->severity[0].olc.olc_g : 0.0;
-    case CP_TARGET_PEAK:
-        return result->severity[0].peak_g;
-    case CP_TARGET_CRUSH:
-        return extreme(pulse, CP_CHANNEL_X, 1.0);
-    case CP_TARGET_T_V0:
-        return result->severity[0].t_v0_s;
-    case CP_TARGET_REBOUND:
-        return extreme(pulse, CP_CHANNEL_VX, -1.0);
-    case CP_TARGET_LOSS_X:
-        return pulse->channel[CP_CHANNEL_VX][0] - at_instant(pulse, CP_CHANNEL_VX, bounds->at_s);
-    case CP_TARGET_GAIN_AWAY:
-        return side *
-               (pulse->channel[CP_CHANNEL_VY][0] - at_instant(pulse, CP_CHANNEL_VY, bounds->at_s));
-    case CP_TARGET_YAW_RATE:
-        return side * at_instant(pulse, CP_CHANNEL_YAW_RATE, bounds->at_s);
-    case CP_TARGET_RESTITUTION:
-        return restitution(target, result);
-    case CP_TARGET_QUANTITIES:
-        break;
-    }
-    return NAN;
+    const cp_suite_look look = {.quantity = bounds->quantity,
+                                .time_s = bounds->at_s,
+                                .side_1 = target->offset_mm >= 0.0 ? 1.0 : -1.0};
+    return cp_suite_quantity_of(&look, result) * cp_target_kind_of(bounds->quantity)->si_per_unit;
 }
 
 typedef struct target_work {

@@ -2,6 +2,7 @@
 #ifndef CALIBRATE_TARGET_H
 #define CALIBRATE_TARGET_H
 
+#include "calibrate/suite_quantity.h"
 #include "crash/vehicle_model.h"
 
 #include <stdbool.h>
@@ -12,32 +13,27 @@
 
 enum { CP_TARGETS_MAX = 24, CP_TARGET_BOUNDS_MAX = 24 };
 
-typedef enum cp_target_quantity {
-    CP_TARGET_OLC,         /* g; 0 where left-censored */
-    CP_TARGET_PEAK,        /* largest deceleration, CFC60, g */
-    CP_TARGET_CRUSH,       /* largest forward displacement of the centre of gravity, m */
-    CP_TARGET_T_V0,        /* first v_x <= 0, s */
-    CP_TARGET_REBOUND,     /* largest backward speed, m/s */
-    CP_TARGET_LOSS_X,      /* of v_x since first contact (an accelerometer's integral), m/s */
-    CP_TARGET_GAIN_AWAY,   /* of v_y away from the side of the offset, likewise, m/s */
-    CP_TARGET_YAW_RATE,    /* towards the side of the offset, rad/s */
-    CP_TARGET_RESTITUTION, /* of the closing speed, 1; by whole cars */
-    CP_TARGET_QUANTITIES
-} cp_target_quantity;
-
-/* Key in the fit file, its unit there, SI per that unit, and whether it is taken at an instant. */
+/* A quantity that a fit may aim at: its key in the fit file, which of the quantities of a crash
+ * that is (suite_quantity.h has its unit in the file, whether it is taken at an instant, and how it
+ * is measured), and SI per that unit. Sideways and yaw are away from and towards the side of the
+ * offset, +1 where there is none. */
 typedef struct cp_target_kind {
     const char *key;
-    const char *unit;
+    cp_suite_quantity quantity;
     double si_per_unit;
-    bool at_instant;
 } cp_target_kind;
 
-extern const cp_target_kind CP_TARGET_KIND[CP_TARGET_QUANTITIES];
+/* By the key in the fit file; NULL when there is none. */
+const cp_target_kind *cp_target_kind_find(const char *key);
+/* Of a quantity that a target has. */
+const cp_target_kind *cp_target_kind_of(cp_suite_quantity quantity);
+/* All keys, "olc_g, peak_g, ... or restitution_1". Returns text. */
+#define CP_TARGET_KEYS_SIZE 256
+const char *cp_target_keys(char text[CP_TARGET_KEYS_SIZE]);
 
 /* A corridor, SI. */
 typedef struct cp_target_bounds {
-    cp_target_quantity quantity;
+    cp_suite_quantity quantity; /* one that fits may aim at */
     double at_s; /* instant after first contact; 0 for quantities of the whole crash */
     double min;
     double max; /* > min */

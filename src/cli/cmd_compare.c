@@ -210,7 +210,7 @@ static void job_destroy(job *j)
 static cp_status read_ensemble(job *j, cp_error *error)
 {
     cp_status status = cp_model_ensemble_read(j->store, &j->data, &j->ensemble, error);
-    if (status == CP_OK && j->ensemble.count < CP_MODEL_SETS_MIN)
+    if (status == CP_OK && j->ensemble.count < CP_MODEL_SETS_MIN && j->data.evidence_count == 0)
         return cp_fail(error, CP_BAD_INPUT,
                        "%s: its crashes have %zu parameter sets in common, --model-uncertainty "
                        "needs %d at least; a vehicle file gets an ensemble by 'ensemble:' of its "

@@ -42,12 +42,9 @@ static const char PARQUET[] =
 
 static void check(arguments *a, struct argp_state *state)
 {
-    if (a->input.request.path == NULL)
-        argp_error(state, "export what? DB or PULSE is missing");
-    if (a->format == NULL)
-        argp_error(state, "as what? --as FORMAT is missing");
-    if (a->options.output_path == NULL)
-        argp_error(state, "where to? --output PATH is missing");
+    cp_args_need(state, a->input.request.path != NULL, "export what? DB or PULSE");
+    cp_args_need(state, a->format != NULL, "as what? --as FORMAT");
+    cp_args_need(state, a->options.output_path != NULL, "where to? --output PATH");
     if (strcmp(a->format, "parquet") == 0)
         return;
     if (a->options.format == CP_EXPORT_FORMAT_COUNT)

@@ -20,7 +20,7 @@
 #define EXAMPLE_S 600.0 /* of it: a minute of work in all */
 
 typedef struct arguments {
-    const char *folder;
+    cp_args_input folder;
     const char *network; /* NULL: the example's */
 } arguments;
 
@@ -36,22 +36,18 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     arguments *a = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &a->folder;
+        return 0;
     case 'n':
         a->network = argument;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (a->folder)
-            argp_error(state, "one folder at a time, found '%s' too", argument);
-        a->folder = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!a->folder)
-            argp_error(state, "where to? DIR is missing");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
+
+static const struct argp_child CHILDREN[] = {{&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
@@ -65,6 +61,7 @@ static const struct argp ARGP = {
            "Examples:\n"
            "  crashpulse init my_study --network town/town.sumocfg\n"
            "  crashpulse init first_study\n",
+    .children = CHILDREN,
 };
 
 // ---- paths ---------------------------------------------------------------------------------
@@ -210,18 +207,18 @@ static cp_status make_folder(const char *folder, char study[PATH_MAX], cp_error 
 
 cp_status cmd_init(int argc, char **argv, cp_error *error)
 {
-    arguments a = {0};
+    arguments a = {.folder = {.one = "folder", .missing = "where to? DIR"}};
     cp_args_parse(&ARGP, argc, argv, &a);
     char sumocfg[PATH_MAX], folder[PATH_MAX], study[PATH_MAX], as_named[PATH_MAX];
     cp_status status = a.network != NULL ? resolve(a.network, sumocfg, error) : CP_OK;
     if (status == CP_OK)
-        status = make_folder(a.folder, study, error);
+        status = make_folder(a.folder.path, study, error);
     if (status == CP_OK && a.network == NULL)
-        status = copy_example(a.folder, as_named, error);
+        status = copy_example(a.folder.path, as_named, error);
     if (status == CP_OK && a.network == NULL)
         status = resolve(as_named, sumocfg, error);
     if (status == CP_OK)
-        status = resolve(a.folder, folder, error);
+        status = resolve(a.folder.path, folder, error);
     if (status == CP_OK)
         status = relative_path(folder, sumocfg, as_named, sizeof as_named, error);
     if (status == CP_OK)
@@ -234,6 +231,6 @@ cp_status cmd_init(int argc, char **argv, cp_error *error)
                "  crashpulse run %s --db %s/study.db\n"
                "  crashpulse compare %s/study.db\n"
                "  crashpulse report %s/study.db --output %s/report.html\n",
-               study, study, study, a.folder, a.folder, a.folder, a.folder);
+               study, study, study, a.folder.path, a.folder.path, a.folder.path, a.folder.path);
     return status;
 }

@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 typedef struct arguments {
-    const char *matrix_path;
+    cp_args_input input;
     const char *db_path;
     const char *function;
     const char *library;
@@ -49,6 +49,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &a->format;
+        state->child_inputs[1] = &a->input;
         return 0;
     case 'd':
         a->db_path = argument;
@@ -68,16 +69,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case ALLOW_PLUGINS:
         a->allow_plugins = true;
         return 0;
-    case ARGP_KEY_ARG:
-        if (a->matrix_path)
-            argp_error(state, "one matrix file at a time, found '%s' too", argument);
-        a->matrix_path = argument;
-        return 0;
     case ARGP_KEY_END:
-        if (!a->matrix_path)
-            argp_error(state, "which matrix? MATRIX.yaml is missing");
-        if (!a->db_path)
-            argp_error(state, "where to? --db FILE is missing");
+        cp_args_need(state, a->db_path != NULL, "where to? --db FILE");
         if (a->function && a->library)
             argp_error(state, "either --function or --library");
         return 0;
@@ -86,7 +79,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     }
 }
 
-static const struct argp_child CHILDREN[] = {{&CP_ARGS_FORMAT, 0, NULL, 0}, {0}};
+static const struct argp_child CHILDREN[] = {
+    {&CP_ARGS_FORMAT, 0, NULL, 0}, {&CP_ARGS_INPUT, 0, NULL, 0}, {0}};
 
 static const struct argp ARGP = {
     .options = OPTIONS,
@@ -114,7 +108,7 @@ static cp_status choose_function(const arguments *a, cp_matrix *matrix, cp_error
                    ? CP_OK
                    : cp_fail(error, CP_BAD_INPUT,
                              "%s: lists no functions; --function NAME or --library FILE says which",
-                             a->matrix_path);
+                             a->input.path);
     const cp_control_type *type = a->function != NULL
                                       ? cp_control_type_find(CP_CONTROL_FUNCTION, a->function)
                                       : &CP_CONTROL_PLUGIN;
@@ -225,16 +219,16 @@ static cp_status print_result(const arguments *a, const cp_matrix *matrix,
 
 cp_status cmd_matrix(int argc, char **argv, cp_error *error)
 {
-    arguments a = {0};
+    arguments a = {.input = {.one = "matrix file", .missing = "which matrix? MATRIX.yaml"}};
     cp_args_parse(&ARGP, argc, argv, &a);
     const char *const outputs[] = {a.db_path, a.plot_path};
-    const char *const inputs[] = {a.matrix_path, a.library};
+    const char *const inputs[] = {a.input.path, a.library};
     cp_matrix matrix = {0};
     cp_matrix_result result = {0};
     cp_store *store = NULL;
     cp_status status = cp_output_files_check(outputs, 2, inputs, 2, error);
     if (status == CP_OK)
-        status = cp_matrix_load(a.matrix_path, &matrix, error);
+        status = cp_matrix_load(a.input.path, &matrix, error);
     if (status == CP_OK)
         status = choose_function(&a, &matrix, error);
     if (status == CP_OK)

@@ -23,8 +23,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         a->input.request.path = argument;
         return 0;
     case ARGP_KEY_END:
-        if (a->input.request.path == NULL)
-            argp_error(state, "which pulse? PULSE is missing");
+        cp_args_need(state, a->input.request.path != NULL, "which pulse? PULSE");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

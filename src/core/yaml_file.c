@@ -111,7 +111,7 @@ cp_status cp_yaml_parse(const char *name, const char *content, size_t size,
     if (status == CP_OK)
         status = cp_yaml_lines_read(name, content, size, &file->lines, &file->line_count, error);
     if (status == CP_OK)
-        status = cp_yaml_structure_check(file->path, file->lines, file->line_count, schema, error);
+        status = cp_yaml_structure_check(file, error);
     if (status == CP_OK)
         status = load_structure(file, content, size, error);
     if (status != CP_OK)
@@ -140,34 +140,6 @@ void cp_yaml_close(cp_yaml_file *file)
     cp_yaml_lines_destroy(file->lines, file->line_count);
     free(file->path);
     *file = (cp_yaml_file){0};
-}
-
-size_t cp_yaml_line_of(const cp_yaml_file *file, const char *key_path)
-{
-    // The entry whose path is the longest beginning of key_path that ends at a path boundary.
-    size_t best_length = 0, best_line = 1;
-    for (size_t k = 0; k < file->line_count; k++) {
-        size_t length = strlen(file->lines[k].path);
-        bool begins = strncmp(file->lines[k].path, key_path, length) == 0;
-        char next = key_path[begins ? length : 0];
-        if (begins && length > best_length && (next == '\0' || next == '.' || next == '[')) {
-            best_length = length;
-            best_line = file->lines[k].line;
-        }
-    }
-    return best_line;
-}
-
-cp_status cp_yaml_fail(const cp_yaml_file *file, cp_error *error, const char *key_path,
-                       const char *format, ...)
-{
-    char message[2048];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
-    va_end(arguments);
-    return cp_fail(error, CP_BAD_INPUT, "%s:%zu: %s %s", file->path,
-                   cp_yaml_line_of(file, key_path), key_path, message);
 }
 
 bool cp_parse_number(const char *text, double *value)

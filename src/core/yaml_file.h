@@ -2,9 +2,8 @@
 #ifndef CORE_YAML_FILE_H
 #define CORE_YAML_FILE_H
 
-#include "core/yaml_lines.h"
+#include "core/yaml_place.h"
 
-#include <cyaml/cyaml.h>
 #include <stdbool.h>
 
 /* Loading a YAML file with libcyaml, with every message naming file and line.
@@ -13,15 +12,6 @@
  * strings in its schemas and converted here (whole text, finite, in range), because libcyaml
  * itself takes nan and 1.5garbage. A second pass with libyaml remembers the line of every key
  * path, so that range messages can name it. */
-
-/* A loaded file; zero-initialise, load, close. */
-typedef struct cp_yaml_file {
-    char *path;
-    cyaml_data_t *data;
-    const cyaml_schema_value_t *schema;
-    cp_yaml_line *lines;
-    size_t line_count;
-} cp_yaml_file;
 
 /* Load path by schema (kept by reference). An empty file is an error too. Errors: CP_BAD_INPUT
  * "file:line: what". On failure the file is closed already. */
@@ -32,13 +22,6 @@ CP_MUST_CHECK cp_status cp_yaml_parse(const char *name, const char *content, siz
                                       const cyaml_schema_value_t *schema, cp_yaml_file *file,
                                       cp_error *error);
 void cp_yaml_close(cp_yaml_file *file);
-
-/* Line of a key path, or of its nearest parent that exists; 1 at worst. */
-size_t cp_yaml_line_of(const cp_yaml_file *file, const char *key_path);
-
-/* "path:line: key_path message" as CP_BAD_INPUT. */
-cp_status cp_yaml_fail(const cp_yaml_file *file, cp_error *error, const char *key_path,
-                       const char *format, ...) __attribute__((format(printf, 4, 5)));
 
 /* Convert text (may be NULL when optional: *value keeps its default) to a finite number within
  * [smallest, largest]; message with key path and line otherwise. */

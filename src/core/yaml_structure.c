@@ -54,25 +54,24 @@ static void write_example(const cyaml_schema_value_t *value, const char *scalar,
     }
 }
 
-static cp_status fail_kind(const char *name, const cp_yaml_line *line,
+static cp_status fail_kind(const cp_yaml_file *file, const cp_yaml_line *line,
                            const cyaml_schema_value_t *value, cp_error *error)
 {
     char example[TEXT_SIZE], keys[TEXT_SIZE];
     const char *names[KEYS_MAX];
     write_example(value, line->scalar, example, sizeof example);
     if (is_list(value))
-        return cp_fail(error, CP_BAD_INPUT,
-                       "%s:%zu: %s must be a list, found the text '%.60s'; for example %s", name,
-                       line->line, line->path, line->scalar, example);
+        return cp_yaml_fail(file, error, line->path,
+                            "must be a list, found the text '%.60s'; for example %s", line->scalar,
+                            example);
     list_keys(value, names, keys);
-    return cp_fail(
-        error, CP_BAD_INPUT,
-        "%s:%zu: %s must be a mapping with the keys %s; found the text '%.60s'; for example "
-        "%s",
-        name, line->line, line->path, keys, line->scalar, example);
+    return cp_yaml_fail(file, error, line->path,
+                        "must be a mapping with the keys %s; found the text '%.60s'; for example "
+                        "%s",
+                        keys, line->scalar, example);
 }
 
-static cp_status fail_key(const char *name, const cp_yaml_line *line,
+static cp_status fail_key(const cp_yaml_file *file, const cp_yaml_line *line,
                           const cyaml_schema_value_t *mapping, const char *key, cp_error *error)
 {
     char keys[TEXT_SIZE], meant[CP_NEAREST_TEXT_SIZE];
@@ -80,9 +79,9 @@ static cp_status fail_key(const char *name, const cp_yaml_line *line,
     size_t count = list_keys(mapping, names, keys);
     cp_nearest_text(key, names, count, meant);
     if (meant[0] != '\0')
-        return cp_fail(error, CP_BAD_INPUT, "%s:%zu: Unexpected key: %s%s", name, line->line, key,
-                       meant);
-    return cp_fail(error, CP_BAD_INPUT, "%s:%zu: Unexpected key: %s; allowed are %s", name,
+        return cp_fail(error, CP_BAD_INPUT, "%s:%zu: Unexpected key: %s%s", file->path, line->line,
+                       key, meant);
+    return cp_fail(error, CP_BAD_INPUT, "%s:%zu: Unexpected key: %s; allowed are %s", file->path,
                    line->line, key, keys);
 }
 
@@ -127,45 +126,39 @@ static const cyaml_schema_value_t *value_at(const cyaml_schema_value_t *value, c
     return value->type == CYAML_IGNORE ? NULL : value;
 }
 
-cp_status cp_yaml_structure_check(const char *name, const cp_yaml_line *lines, size_t count,
-                                  const cyaml_schema_value_t *schema, cp_error *error)
+cp_status cp_yaml_structure_check(const cp_yaml_file *file, cp_error *error)
 {
-    for (size_t k = 0; k < count; k++) {
-        const cp_yaml_line *line = &lines[k];
-        const cyaml_schema_value_t *within = schema;
+    for (size_t k = 0; k < file->line_count; k++) {
+        const cp_yaml_line *line = &file->lines[k];
+        const cyaml_schema_value_t *within = file->schema;
         char unknown[256];
-        const cyaml_schema_value_t *value = value_at(schema, line->path, unknown, &within);
+        const cyaml_schema_value_t *value = value_at(file->schema, line->path, unknown, &within);
         if (value == NULL && unknown[0] != '\0')
-            return fail_key(name, line, within, unknown, error);
+            return fail_key(file, line, within, unknown, error);
         if (value == NULL)
             continue;
         // The values of a collection follow it.
         size_t length = strlen(line->path);
-        bool has_child = line->scalar == NULL && k + 1 < count &&
-                         strncmp(lines[k + 1].path, line->path, length) == 0;
+        bool has_child = line->scalar == NULL && k + 1 < file->line_count &&
+                         strncmp(file->lines[k + 1].path, line->path, length) == 0;
         char next = '\0';
         if (has_child)
-            next = lines[k + 1].path[length];
+            next = file->lines[k + 1].path[length];
         if (next != '.' && next != '[')
             next = '\0';
         if (line->scalar != NULL && line->scalar[0] != '\0' && !is_scalar(value) && length > 0)
-            return fail_kind(name, line, value, error);
+            return fail_kind(file, line, value, error);
         if (line->scalar == NULL && is_scalar(value))
-            return cp_fail(error, CP_BAD_INPUT,
-                           "%s:%zu: %s must be a text or a number, found a list or a mapping", name,
-                           line->line, line->path);
+            return cp_yaml_fail(file, error, line->path,
+                                "must be a text or a number, found a list or a mapping");
         if (value->type == CYAML_MAPPING && next == '[' && length > 0)
-            return cp_fail(error, CP_BAD_INPUT, "%s:%zu: %s must be a mapping, found a list", name,
-                           line->line, line->path);
+            return cp_yaml_fail(file, error, line->path, "must be a mapping, found a list");
         if (is_list(value) && line->scalar == NULL && next == '\0' && value->sequence.min > 0)
-            return cp_fail(error, CP_BAD_INPUT, "%s:%zu: %s must be a list of at least one entry",
-                           name, line->line, line->path);
+            return cp_yaml_fail(file, error, line->path, "must be a list of at least one entry");
         if (is_list(value) && next == '.' && length > 0)
-            return cp_fail(
-                error, CP_BAD_INPUT,
-                "%s:%zu: %s must be a list ('- ' in front of each of its entries), found a "
-                "mapping",
-                name, line->line, line->path);
+            return cp_yaml_fail(file, error, line->path,
+                                "must be a list ('- ' in front of each of its entries), found a "
+                                "mapping");
     }
     return CP_OK;
 }

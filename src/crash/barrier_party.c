@@ -33,10 +33,11 @@ static void set_face(cp_car *car)
     car->block_count = CP_BARRIER_STRIPS;
 }
 
-void cp_barrier_party_build(cp_car *car, dWorldID world, const cp_body_state *state)
+void cp_barrier_party_build(cp_car *car, const cp_vehicle_model *model, dWorldID world,
+                            const cp_body_state *state)
 {
-    const cp_barrier *barrier = &car->model->barrier;
-    car->body_count = 1;
+    const cp_barrier *barrier = &model->barrier;
+    *car = (cp_car){.model = model, .body_count = 1, .struck_block = -1};
     car->mass_kg[CP_BODY_ROOT] = car->model->mass_kg;
     car->inertia_kg_m2[CP_BODY_ROOT] = car->model->yaw_inertia_kg_m2;
     cp_car_place_body(car, CP_BODY_ROOT, (cp_vec2){0.0, 0.0}, world, state);

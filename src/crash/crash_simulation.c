@@ -4,6 +4,7 @@
 #include "core/memory.h"
 #include "core/units.h"
 #include "crash/barrier.h"
+#include "crash/barrier_party.h"
 #include "crash/encounter.h"
 #include "crash/film_camera.h"
 #include "crash/struck_structure.h"
@@ -16,16 +17,6 @@ cp_crash_options cp_crash_options_default(void)
 {
     return (cp_crash_options){
         .time_step_s = 0.0005, .duration_s = 0.2, .longest_duration_s = 0.4, .coast_after_s = 0.01};
-}
-
-const char *cp_struck_zone_text(cp_struck_zone zone)
-{
-    static const char *const TEXT[] = {
-#define CP_STRUCK_ZONE_TEXT(name, text) text,
-        CP_STRUCK_ZONES(CP_STRUCK_ZONE_TEXT)
-#undef CP_STRUCK_ZONE_TEXT
-    };
-    return TEXT[zone];
 }
 
 // ---- ODE as a library ------------------------------------------------------------------------
@@ -196,6 +187,20 @@ static void translate_car(cp_car *car, cp_vec2 shift_m)
     }
 }
 
+// A car with sides and rear unless it is struck on its front; or a barrier.
+static cp_status build_party(cp_car *car, const cp_vehicle_model *model, cp_contact_side struck,
+                             dWorldID world, const cp_body_state *state, cp_error *error)
+{
+    if (model->is_barrier) {
+        cp_barrier_party_build(car, model, world, state);
+        return CP_OK;
+    }
+    cp_status status = cp_car_build(car, model, world, state, error);
+    if (status == CP_OK && struck != CP_SIDE_FRONT)
+        cp_struck_build(car);
+    return status;
+}
+
 // Build both parties in a's frame and move a along the relative velocity until they touch.
 static cp_status set_up(crash_run *run, const cp_vehicle_model *models[2],
                         const cp_crash_configuration *configuration, cp_error *error)
@@ -213,8 +218,8 @@ static cp_status set_up(crash_run *run, const cp_vehicle_model *models[2],
     for (int k = 0; k < run->car_count; k++) {
         cp_body_state state = states[k];
         state.velocity_m_s = cp_vec2_sub(state.velocity_m_s, run->common_m_s);
-        cp_status status = cp_car_build(&run->car[k], models[k], configuration->side[k], run->world,
-                                        &state, error);
+        cp_status status =
+            build_party(&run->car[k], models[k], configuration->side[k], run->world, &state, error);
         if (status != CP_OK)
             return status;
         run->side[k] = configuration->side[k];
@@ -497,8 +502,10 @@ static cp_status advance(crash_run *run, double dt, double *pressed_n, cp_error 
         return cp_fail(error, CP_CRASH_FAILED, "the physics engine ODE refused the step at %g s",
                        dt * (double)run->sample);
     *pressed_n = cp_encounter_end_step(&run->encounter, dt);
-    for (int c = 0; c < run->car_count; c++)
+    for (int c = 0; c < run->car_count; c++) {
         cp_car_after_step(&run->car[c], dt);
+        cp_struck_after_step(&run->car[c]);
+    }
     record_step(run, dt);
     film_now(run, dt);
     return CP_OK;

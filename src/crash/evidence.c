@@ -2,7 +2,7 @@
 #include "crash/evidence.h"
 
 #include "core/units.h"
-#include "crash/validity.h"
+#include "crash/validity_reason.h"
 
 #include <math.h>
 #include <string.h>

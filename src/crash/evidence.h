@@ -53,9 +53,9 @@ cp_evidence_case cp_evidence_case_of(const cp_vehicle_model *model_a,
                                      const cp_crash_description *description, int role);
 
 /* The first class kept by the model that holds the case; NULL: none. Then *outside are the validity
- * reasons (crash/validity.h) by which the case misses the class that it misses by fewest of speed,
- * offset (overlap), angle, oblique_velocity; opponent_structure besides where no class kept has
- * that opponent, model where none is kept at all. *outside is 0 with a class. */
+ * reasons (crash/validity_reason.h) by which the case misses the class that it misses by fewest of
+ * speed, offset (overlap), angle, oblique_velocity; opponent_structure besides where no class kept
+ * has that opponent, model where none is kept at all. *outside is 0 with a class. */
 const cp_evidence *cp_evidence_find(const cp_vehicle_model *model, const cp_evidence_case *crash,
                                     unsigned *outside);
 

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "crash/front_structure.h"
 
-#include "crash/barrier_party.h"
 #include "crash/crush_law.h"
-#include "crash/struck_structure.h"
 
 #include <string.h>
 
@@ -387,14 +385,10 @@ bool cp_car_is_struck(const cp_car *car)
     return car->struck_block >= 0;
 }
 
-cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model, cp_contact_side struck,
-                       dWorldID world, const cp_body_state *state, cp_error *error)
+cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model, dWorldID world,
+                       const cp_body_state *state, cp_error *error)
 {
     *car = (cp_car){.model = model, .body_count = CP_BODY_COUNT, .struck_block = -1};
-    if (model->is_barrier) {
-        cp_barrier_party_build(car, world, state);
-        return CP_OK;
-    }
     layout at = layout_of(model);
     cp_vec2 place[CP_BODY_COUNT];
     cp_status status = distribute_mass(car, &at, place, error);
@@ -406,9 +400,6 @@ cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model, cp_contact_si
     set_force_elements(car, &at, place);
     set_blocks(car, &at, place[CP_BODY_ROOT].x);
     set_outlines(car, &at, place);
-    if (struck != CP_SIDE_FRONT)
-        cp_struck_build(car, at.firewall_m - place[CP_BODY_ROOT].x,
-                        model->cg_to_front_m - model->length_m - place[CP_BODY_ROOT].x);
     return CP_OK;
 }
 
@@ -592,8 +583,6 @@ void cp_car_after_step(cp_car *car, double time_step_s)
     for (int k = 0; k < car->front_block_count; k++)
         car->intrusion_m = fmax(car->intrusion_m, block_intrusion(car, k));
     car->block[CP_BLOCK_CELL].s_m = car->intrusion_m;
-    if (cp_car_is_struck(car))
-        cp_struck_after_step(car);
 }
 
 // ---- views -----------------------------------------------------------------------------------

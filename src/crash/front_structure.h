@@ -4,7 +4,7 @@
 
 #include "crash/contact.h"
 #include "crash/crash_configuration.h"
-#include "crash/crash_simulation.h"
+#include "crash/crash_outcome.h"
 #include "crash/crush_block.h"
 #include "crash/crush_element.h"
 #include "crash/crush_law.h"
@@ -125,12 +125,10 @@ typedef struct cp_car {
     double crush_m;     /* largest shortening bumper to firewall so far */
 } cp_car;
 
-/* Build the car in the world at a state, with sides and rear (crash/struck_structure.h) unless it
- * is struck on its front. The world owns bodies and joints, and knows where the car is: it must
- * stay there until the world has gone. Errors: CP_BAD_INPUT when masses and inertia do not fit
- * together (naming the field). */
-CP_MUST_CHECK cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model,
-                                     cp_contact_side struck, dWorldID world,
+/* Build the car in the world at a state, with its front alone. The world owns bodies and joints,
+ * and knows where the car is: it must stay there until the world has gone. Errors: CP_BAD_INPUT
+ * when masses and inertia do not fit together (naming the field). */
+CP_MUST_CHECK cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model, dWorldID world,
                                      const cp_body_state *state, cp_error *error);
 
 /* Create body number index at a place, x forward from the centre of gravity, moving with the car.
@@ -138,7 +136,7 @@ CP_MUST_CHECK cp_status cp_car_build(cp_car *car, const cp_vehicle_model *model,
 void cp_car_place_body(cp_car *car, int index, cp_vec2 place_m, dWorldID world,
                        const cp_body_state *state);
 
-/* Whether it has sides and rear. */
+/* Whether it has sides and rear (crash/struck_structure.h). */
 bool cp_car_is_struck(const cp_car *car);
 
 /* Put all forces of the coming step on the bodies, and take elastic_j. */

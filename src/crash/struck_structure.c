@@ -31,9 +31,12 @@ static void add_block(cp_car *car, cp_crush_block block, cp_car_outline outline)
     car->outline[CP_OUTLINE_BLOCKS + index] = outline;
 }
 
-void cp_struck_build(cp_car *car, double firewall_m, double rear_m)
+void cp_struck_build(cp_car *car)
 {
     const cp_vehicle_model *m = car->model;
+    cp_car_outline *body = &car->outline[CP_OUTLINE_BODY];
+    double firewall_m = body->centre_m.x + body->half_length_m;
+    double rear_m = body->centre_m.x - body->half_length_m;
     double rear_depth_m = m->rear_collapse_end_m + REAR_REST_M,
            rear_front_m = rear_m + rear_depth_m;
     double side_depth_m = SIDE_DEPTH_1 * m->width_m, side_length_m = firewall_m - rear_front_m;
@@ -67,7 +70,6 @@ void cp_struck_build(cp_car *car, double firewall_m, double rear_m)
         cp_struck_cover(car, car->struck_block + face, INFINITY, -INFINITY, 0.0);
 
     // The core between them.
-    cp_car_outline *body = &car->outline[CP_OUTLINE_BODY];
     body->centre_m.x = 0.5 * (firewall_m + rear_front_m);
     body->half_length_m = 0.5 * side_length_m;
     body->half_width_m = 0.5 * m->width_m - side_depth_m;
@@ -131,7 +133,7 @@ void cp_struck_cover(cp_car *car, int block, double right_m, double left_m, doub
 
 void cp_struck_after_step(cp_car *car)
 {
-    for (int side = LEFT; side <= RIGHT; side++) {
+    for (int side = LEFT; side <= RIGHT && cp_car_is_struck(car); side++) {
         double s_m = car->block[car->struck_block + side].s_m, before_m = car->zone_s_m[side];
         if (s_m <= before_m)
             continue;

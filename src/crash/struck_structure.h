@@ -19,16 +19,16 @@
  * The rear is one face over the whole width: what presses on a share of it (and rear_spread_m)
  * meets that share of its force. From the side it is pushed aside as a whole. */
 
-/* Add the three blocks and their outlines, and make room for them in the body's; x of firewall
- * and rear end in the root's frame. */
-void cp_struck_build(cp_car *car, double firewall_m, double rear_m);
+/* Add the three blocks and their outlines to a car that is built, and make room for them in its
+ * body's. */
+void cp_struck_build(cp_car *car);
 
 /* What of a struck block's face is pressed on in the present step, along its own left from
  * right_m to left_m (right_m > left_m: nothing), the innermost of it inside_m from the nearer end:
  * sets what it resists with. */
 void cp_struck_cover(cp_car *car, int block, double right_m, double left_m, double inside_m);
 
-/* After the step: which zone took how much. */
+/* After the step: which zone took how much. Nothing of a car without sides. */
 void cp_struck_after_step(cp_car *car);
 
 /* How far the struck side has been pushed in for good, m, and the zone that took most of it; of a

@@ -231,16 +231,36 @@ static cp_status take_row(reading *self, char *line, cp_error *error)
     return status;
 }
 
-// A row that cannot be taken: why stands in the list.
-static cp_status leave_out(cp_configuration_list *list, const cp_error *why, cp_error *error)
+// Why a row is not in the list.
+static cp_status add_bad(cp_configuration_list *list, const char *why, cp_error *error)
 {
     char **added = cp_array_add(list->bad, list->bad_count);
     if (added == NULL)
         return cp_fail_memory(error, "configurations");
-    *added = strdup(why->text);
+    *added = strdup(why);
     if (*added == NULL)
         return cp_fail_memory(error, "configurations");
     return CP_OK;
+}
+
+cp_status cp_configuration_list_leave_out(cp_configuration_list *list, size_t row, const char *why,
+                                          cp_error *error)
+{
+    cp_status status = add_bad(list, why, error);
+    if (status != CP_OK)
+        return status;
+    destroy_row(&list->row[row]);
+    list->row[row] = (cp_listed_configuration){0};
+    return CP_OK;
+}
+
+void cp_configuration_list_close_up(cp_configuration_list *list)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < list->count; k++)
+        if (list->row[k].id != NULL)
+            list->row[kept++] = list->row[k];
+    list->count = kept;
 }
 
 static cp_status take_lines(reading *self, char *content, bool strict, cp_error *error)
@@ -255,7 +275,7 @@ static cp_status take_lines(reading *self, char *content, bool strict, cp_error 
         cp_error why = {0};
         status = has_header ? take_row(self, line, &why) : take_header(self, line, &why);
         if (status == CP_BAD_INPUT && has_header && !strict)
-            status = leave_out(self->list, &why, error);
+            status = add_bad(self->list, why.text, error);
         else if (status != CP_OK)
             *error = why;
         has_header = true;

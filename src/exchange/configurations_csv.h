@@ -47,6 +47,11 @@ typedef struct cp_configuration_list {
  * strict or no row is right; CP_NO_MEMORY. After an error the list is destroyed already. */
 CP_MUST_CHECK cp_status cp_configurations_csv_read(const char *path, bool strict,
                                                    cp_configuration_list *list, cp_error *error);
+/* Empty a row that turns out to be bad (id NULL); why: added to list->bad. Then, once: take the
+ * empty rows out, the order of the others stays. Error: CP_NO_MEMORY. */
+CP_MUST_CHECK cp_status cp_configuration_list_leave_out(cp_configuration_list *list, size_t row,
+                                                        const char *why, cp_error *error);
+void cp_configuration_list_close_up(cp_configuration_list *list);
 void cp_configuration_list_destroy(cp_configuration_list *list);
 
 #endif

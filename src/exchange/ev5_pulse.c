@@ -259,8 +259,10 @@ cp_status cp_ev5_pulse_read(const cp_pulse_request *request, cp_pulse_record *re
     if (status != CP_OK)
         return status;
     memcpy(curve, request->curve, sizeof curve);
-    int vehicle = request->vehicle != NULL ? atoi(request->vehicle) : 0;
-    if (request->vehicle != NULL && (vehicle < 1 || vehicle > 9))
+    const char *told = request->vehicle;
+    bool is_digit = told != NULL && told[0] >= '1' && told[0] <= '9' && told[1] == '\0';
+    int vehicle = is_digit ? told[0] - '0' : 0;
+    if (told != NULL && !is_digit)
         status = cp_fail(error, CP_BAD_INPUT, "%s: the vehicle must be a number, found '%s'",
                          request->path, request->vehicle);
     else if (count == 0)

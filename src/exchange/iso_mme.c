@@ -221,10 +221,12 @@ static void list_channels(const cp_iso_mme_test *test, size_t object, const cp_p
     const cp_iso_mme_object *own = &test->object[object];
     for (int c = 0; c < CP_CHANNEL_COUNT; c++) {
         bool is_acceleration = c == CP_CHANNEL_AX || c == CP_CHANNEL_AY || c == CP_CHANNEL_YAW_ACC;
+        char filter = '0';
+        if (is_acceleration)
+            filter = own->filter;
         if (own->record->known[c])
             list[(*count)++] =
-                (channel){object, (cp_pulse_channel)c, is_acceleration ? own->filter : '0',
-                          own->record->pulse.channel[c]};
+                (channel){object, (cp_pulse_channel)c, filter, own->record->pulse.channel[c]};
     }
     for (int k = 0; filtered->sample_count > 0 && k < FILTER_60_CHANNELS; k++)
         if (own->record->known[FILTERED[k]])

@@ -209,12 +209,14 @@ static cp_status read_header(channel_file *file, char *content, char **rest, siz
 
 // ---- which channels ------------------------------------------------------------------------
 
-// Below 0: the first is less filtered.
-static int compare_filters(char filter, char other)
+// Place of a filter class in the order from the least filtered on.
+static size_t filter_rank(char filter)
 {
-    static const char ORDER[] = "0PABCD";
-    const char *one = memchr(ORDER, filter, 6), *two = memchr(ORDER, other, 6);
-    return (int)(one != NULL ? one - ORDER : 6) - (int)(two != NULL ? two - ORDER : 6);
+    static const char ORDER[] = {'0', 'P', 'A', 'B', 'C', 'D'};
+    size_t rank = 0;
+    while (rank < sizeof ORDER && ORDER[rank] != filter)
+        rank++;
+    return rank;
 }
 
 // Our channel that a code is of; CP_CHANNEL_COUNT: none that is asked for.
@@ -252,12 +254,14 @@ static cp_status read_channel(reading *self, const char *path, cp_error *error)
     cp_status status = cp_file_read_text(path, &content, &size, error);
     if (status == CP_OK)
         status = read_header(&file, content, &rest, &line, error);
+    if (status == CP_OK && file.code[0] == '\0')
+        status = cp_fail(error, CP_BAD_INPUT, "%s: tells no Channel code", path);
     int channel = status == CP_OK ? channel_of(self, file.code) : CP_CHANNEL_COUNT;
     channel_file *known = channel < CP_CHANNEL_COUNT ? &self->chosen[channel] : NULL;
     if (status == CP_OK)
         self->channel_count++;
     if (known != NULL && known->value != NULL &&
-        compare_filters(file.code[15], known->code[15]) >= 0)
+        filter_rank(file.code[15]) >= filter_rank(known->code[15]))
         known = NULL;
     if (status == CP_OK && known == NULL)
         pass_over(self, file.code);
@@ -467,9 +471,9 @@ static cp_status take_pulse(reading *self, cp_error *error)
 // '1' for "1", "a" or nothing.
 static char object_of(const char *vehicle)
 {
-    if (vehicle == NULL)
+    if (vehicle == NULL || strcmp(vehicle, "a") == 0)
         return '1';
-    return vehicle[0] == 'a' || vehicle[0] == 'b' ? (char)(vehicle[0] - 'a' + '1') : vehicle[0];
+    return strcmp(vehicle, "b") == 0 ? '2' : vehicle[0];
 }
 
 cp_status cp_iso_mme_read(const cp_pulse_request *request, cp_pulse_record *record, cp_error *error)

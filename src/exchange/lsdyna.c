@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/lsdyna.h"
 
+#include "core/array.h"
 #include "core/csv_row.h"
 #include "core/safe_text.h"
 #include "core/yaml_file.h"
@@ -193,13 +194,10 @@ static cp_status take_point(reading *self, const char *line, cp_error *error)
             return cp_fail(error, CP_BAD_INPUT,
                            "%s:%zu: must be two numbers in fields of 20 columns, found '%.50s'",
                            self->request->path, self->line, line);
-    if (own->count == own->room) {
-        own->room = own->room > 0 ? 2 * own->room : 256;
-        double *larger = realloc(own->point, 2 * own->room * sizeof *larger);
-        if (larger == NULL)
-            return cp_fail_memory(error, self->request->path);
-        own->point = larger;
-    }
+    cp_status status =
+        cp_array_reserve(own->point, own->room, 2 * (own->count + 1), self->request->path, error);
+    if (status != CP_OK)
+        return status;
     own->point[2 * own->count] = own->scale_time * (value[0] + own->offset_time);
     own->point[2 * own->count++ + 1] = own->scale_value * (value[1] + own->offset_value);
     return CP_OK;
@@ -270,11 +268,10 @@ static cp_status take_keyword(reading *self, const char *line, cp_error *error)
     self->expected = 0;
     if (!titled && !(length == 13 && strncasecmp(line, "*DEFINE_CURVE", 13) == 0))
         return CP_OK;
-    curve *larger = realloc(self->list, (self->count + 1) * sizeof *larger);
-    if (larger == NULL)
+    curve *added = cp_array_add(self->list, self->count);
+    if (added == NULL)
         return cp_fail_memory(error, self->request->path);
-    self->list = larger;
-    self->list[self->count++] = (curve){.line = self->line, .channel = CP_CHANNEL_COUNT};
+    *added = (curve){.line = self->line, .channel = CP_CHANNEL_COUNT};
     self->expected = titled ? 1 : 2;
     return CP_OK;
 }

@@ -240,6 +240,13 @@ static json_t *contrast_json(const cp_study_data *data, const cp_contrast_figure
                             json_pack("{s:o, s:o}", "olc_median_difference_g",
                                       model_part_json(&c->median_model), "olc_cliffs_delta",
                                       model_part_json(&c->delta_model)));
+    if (c->class_vehicles[0] > 0)
+        json_object_set_new(
+            object, "class_error",
+            json_pack("{s:o, s:[I, I], s:[I, I]}", "olc_mean_difference_se_g",
+                      cp_number_json(c->class_error_g), "vehicles",
+                      (json_int_t)c->class_vehicles[0], (json_int_t)c->class_vehicles[1], "without",
+                      (json_int_t)c->class_without[0], (json_int_t)c->class_without[1]));
     if (c->field)
         json_object_set_new(object, "field", cp_field_contrast_json(data, c->field));
     return object;

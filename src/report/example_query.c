@@ -11,6 +11,7 @@
     X(configuration_map)                                                                           \
     X(configuration_points)                                                                        \
     X(validity)                                                                                    \
+    X(validity_classes)                                                                            \
     X(paired_replications)                                                                         \
     X(crash_sites)                                                                                 \
     X(counterfactual_outcomes)                                                                     \

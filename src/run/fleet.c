@@ -4,7 +4,6 @@
 #include "core/file.h"
 #include "crash/named_vehicle.h"
 #include "crash/shipped_vehicle.h"
-#include "run/fleet_car.h"
 #include "study/scenario_files.h"
 
 #include <stdlib.h>
@@ -168,6 +167,18 @@ static cp_status add_none(cp_fleet *fleet, cp_error *error)
     row->yaml = strdup(YAML);
     cp_hash_bytes(YAML, sizeof YAML - 1, row->hash);
     return row->name != NULL && row->yaml != NULL ? CP_OK : cp_fail_memory(error, "vehicles");
+}
+
+cp_status cp_fleet_check_market(const cp_study *study, cp_error *error)
+{
+    for (size_t k = 0; k < study->market_count; k++)
+        if (!cp_vehicle_is_fleet_class(study->market[k].vehicle_class))
+            return cp_fail(error, CP_BAD_INPUT,
+                           "%s:%zu: vehicles.market[%zu].class must be a vehicle class of the "
+                           "fleet, found '%s'; there are %s",
+                           study->path, study->market[k].line, k, study->market[k].vehicle_class,
+                           cp_vehicle_fleet_classes());
+    return CP_OK;
 }
 
 cp_status cp_fleet_load(const cp_study *study, cp_fleet *fleet, cp_error *error)

@@ -42,6 +42,9 @@ typedef struct cp_fleet_choice {
     char reason[CP_CHOICE_REASON_SIZE]; /* why there is none */
 } cp_fleet_choice;
 
+/* Errors: CP_BAD_INPUT with file and line when the study's market names no class of a fleet. */
+CP_MUST_CHECK cp_status cp_fleet_check_market(const cp_study *study, cp_error *error);
+
 /* The model of that name; NULL when the fleet has none. */
 const cp_vehicle_model *cp_fleet_find(const cp_fleet *fleet, const char *name);
 

@@ -12,18 +12,6 @@ void cp_fleet_begin(cp_fleet *fleet, size_t replication_number)
                                     replication_number);
 }
 
-cp_status cp_fleet_check_market(const cp_study *study, cp_error *error)
-{
-    for (size_t k = 0; k < study->market_count; k++)
-        if (!cp_vehicle_is_fleet_class(study->market[k].vehicle_class))
-            return cp_fail(error, CP_BAD_INPUT,
-                           "%s:%zu: vehicles.market[%zu].class must be a vehicle class of the "
-                           "fleet, found '%s'; there are %s",
-                           study->path, study->market[k].line, k, study->market[k].vehicle_class,
-                           cp_vehicle_fleet_classes());
-    return CP_OK;
-}
-
 // The class drawn by the market's shares of the type; NULL when it has none.
 static const char *draw_of_market(const cp_study *study, const char *sumo_type, double uniform_1)
 {

@@ -26,7 +26,4 @@ CP_MUST_CHECK cp_status cp_fleet_car(const cp_fleet *fleet, const char *sumocfg_
                                      const char *sumo_id, cp_fleet_choice *choice,
                                      cp_vehicle_model *car, cp_error *error);
 
-/* Errors: CP_BAD_INPUT with file and line when the study's market names no class of a fleet. */
-CP_MUST_CHECK cp_status cp_fleet_check_market(const cp_study *study, cp_error *error);
-
 #endif

@@ -8,6 +8,8 @@
 #include "run/confinement.h"
 #include "run/fleet.h"
 #include "run/owner.h"
+#include "run/shard.h"
+#include "run/signals.h"
 #include "run/worker.h"
 #include "store/background_rows.h"
 #include "store/claim.h"
@@ -21,12 +23,10 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
-#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/signalfd.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -43,6 +43,7 @@ typedef struct runner_job {
 typedef struct runner {
     const cp_runner_options *options;
     cp_runner_summary *summary;
+    cp_shard shard;
     char worker_path[PATH_SIZE];
     char parent[32]; /* our pid, for the workers to follow */
     cp_owner self;
@@ -57,50 +58,12 @@ typedef struct runner {
     bool *background_missing; /* of each of plan.background: to run, by us, and not yet started */
     runner_job *jobs;
     size_t running;
-    sigset_t old_mask;
-    int signals; /* descriptor of SIGCHLD, SIGINT, SIGTERM; -1: not set up */
+    cp_signals signals;
     bool interrupted;
     double time_limit_s; /* of one replication */
     char first_failure[512];
     cp_progress progress;
 } runner;
-
-// ---- shards --------------------------------------------------------------------------------
-
-// The replications of the plan are dealt out in turn: shards are alike in scenarios and variants,
-// unless their numbers divide each other, and in number of replications always.
-static bool is_ours(const runner *run, size_t place)
-{
-    size_t shards = run->options->shards;
-    return shards == 0 || place % shards == run->options->shard - 1;
-}
-
-static int by_id(const void *one, const void *other)
-{
-    int64_t a = *(const int64_t *)one, b = *(const int64_t *)other;
-    return (a > b) - (a < b);
-}
-
-// Of what waits, keep our share; backgrounds are dealt out in turn too.
-static cp_status keep_ours(runner *run, cp_error *error)
-{
-    for (size_t k = 0; k < run->plan.background_count; k++)
-        run->background_missing[k] &= is_ours(run, k);
-    int64_t *ours = malloc((run->plan.replication_count + 1) * sizeof *ours);
-    if (ours == NULL)
-        return cp_fail_memory(error, "shard");
-    size_t count = 0, kept = 0;
-    for (size_t k = 0; k < run->plan.replication_count; k++)
-        if (is_ours(run, k))
-            ours[count++] = run->plan.replication[k].id;
-    qsort(ours, count, sizeof *ours, by_id);
-    for (size_t k = 0; k < run->waiting_count; k++)
-        if (bsearch(&run->waiting[k], ours, count, sizeof *ours, by_id) != NULL)
-            run->waiting[kept++] = run->waiting[k];
-    run->waiting_count = kept;
-    free(ours);
-    return CP_OK;
-}
 
 // ---- preparation ---------------------------------------------------------------------------
 
@@ -126,7 +89,7 @@ static cp_status load_inputs(runner *run, cp_error *error)
         run->time_limit_s = fmax(SHORTEST_TIME_LIMIT_S,
                                  10.0 * fmax(run->study.duration_s, run->study.background_s));
     for (size_t k = 0; k < run->plan.replication_count; k++)
-        run->summary->replications += is_ours(run, k);
+        run->summary->replications += cp_shard_has(&run->shard, k);
     return status;
 }
 
@@ -224,8 +187,11 @@ static cp_status prepare_store(runner *run, cp_error *error)
         status = cp_claim_waiting(run->store, &run->waiting, &run->waiting_count, error);
     if (status == CP_OK)
         status = find_backgrounds(run, error);
+    // Of what waits, our share; backgrounds are dealt out in turn too.
+    for (size_t k = 0; status == CP_OK && k < run->plan.background_count; k++)
+        run->background_missing[k] &= cp_shard_has(&run->shard, k);
     if (status == CP_OK && run->options->shards > 0)
-        status = keep_ours(run, error);
+        status = cp_shard_keep(&run->shard, &run->plan, run->waiting, &run->waiting_count, error);
     if (status == CP_OK)
         status = cp_query_number(
             run->store, "SELECT count(*) FROM replication WHERE status = 'done'", &done, error);
@@ -237,32 +203,7 @@ static cp_status prepare_store(runner *run, cp_error *error)
     return status;
 }
 
-// ---- signals -------------------------------------------------------------------------------
-
-// Signals come as data from here on: nothing happens behind our back.
-static cp_status begin_signals(runner *run, cp_error *error)
-{
-    sigset_t mask;
-    sigemptyset(&mask);
-    sigaddset(&mask, SIGCHLD);
-    sigaddset(&mask, SIGINT);
-    sigaddset(&mask, SIGTERM);
-    if (sigprocmask(SIG_BLOCK, &mask, &run->old_mask) == 0) {
-        run->signals = signalfd(-1, &mask, SFD_CLOEXEC);
-        if (run->signals >= 0)
-            return CP_OK;
-        sigprocmask(SIG_SETMASK, &run->old_mask, NULL);
-    }
-    return cp_fail(error, CP_IO_FAILED, "signals: %s", strerror(errno));
-}
-
-static void end_signals(runner *run)
-{
-    if (run->signals < 0)
-        return;
-    close(run->signals);
-    sigprocmask(SIG_SETMASK, &run->old_mask, NULL);
-}
+// ---- jobs ----------------------------------------------------------------------------------
 
 // Until the first of the workers has to be done.
 static double seconds_left(const runner *run)
@@ -273,27 +214,6 @@ static double seconds_left(const runner *run)
             first_s = fmin(first_s, run->jobs[k].child.started_s + run->time_limit_s);
     return fmax(0.0, first_s - cp_clock_s());
 }
-
-// Sleep until a child ends, one is overdue, or somebody asks us to stop.
-static cp_status wait_signal(runner *run, cp_error *error)
-{
-    struct signalfd_siginfo info;
-    struct pollfd ready = {.fd = run->signals, .events = POLLIN};
-    int timeout_ms = (int)fmin(ceil(1e3 * seconds_left(run)), 3.6e6);
-    int found = poll(&ready, 1, timeout_ms);
-    if (found == 0 || (found < 0 && errno == EINTR))
-        return CP_OK;
-    ssize_t length = read(run->signals, &info, sizeof info);
-    if (length < 0 && errno == EINTR)
-        return CP_OK;
-    if (length != sizeof info)
-        return cp_fail(error, CP_IO_FAILED, "signals: %s", strerror(errno));
-    if (info.ssi_signo != SIGCHLD)
-        run->interrupted = true;
-    return CP_OK;
-}
-
-// ---- jobs ----------------------------------------------------------------------------------
 
 // The next background to run; NULL when all are done or being run.
 static const cp_background_plan_row *next_background(const runner *run)
@@ -532,7 +452,7 @@ static cp_status run_jobs(runner *run, cp_error *error)
     run->jobs = calloc(run->options->jobs, sizeof *run->jobs);
     if (run->jobs == NULL)
         return cp_fail_memory(error, "jobs");
-    cp_status status = begin_signals(run, error);
+    cp_status status = cp_signals_begin(&run->signals, error);
     if (status != CP_OK)
         return status;
     if (run->options->progress)
@@ -541,7 +461,7 @@ static cp_status run_jobs(runner *run, cp_error *error)
         status = start_jobs(run, error);
         if (status != CP_OK || run->running == 0)
             break;
-        status = wait_signal(run, error);
+        status = cp_signals_wait(&run->signals, seconds_left(run), &run->interrupted, error);
         if (status == CP_OK)
             status = finish_ended_jobs(run, error);
         if (status == CP_OK)
@@ -606,7 +526,10 @@ static cp_status conclude(runner *run, cp_error *error)
 cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *summary,
                         cp_error *error)
 {
-    runner run = {.options = options, .summary = summary, .signals = -1};
+    runner run = {.options = options,
+                  .summary = summary,
+                  .shard = {options->shard, options->shards},
+                  .signals = CP_SIGNALS_NONE};
     double started_s = cp_clock_s();
     *summary = (cp_runner_summary){0};
     if (options->jobs < 1)
@@ -629,7 +552,7 @@ cp_status cp_runner_run(const cp_runner_options *options, cp_runner_summary *sum
     if (status == CP_OK)
         status = conclude(&run, error);
     summary->wall_time_s = cp_clock_s() - started_s;
-    end_signals(&run);
+    cp_signals_end(&run.signals);
     cp_said_destroy(&run.said);
     free(run.jobs);
     free(run.waiting);

@@ -454,7 +454,7 @@ cp_status cp_study_load(const char *path, cp_study *study, cp_error *error)
     if (status == CP_OK)
         status = cp_file_read(path, &study->content, &size, error);
     if (status == CP_OK)
-        status = cp_yaml_load(path, &CP_RAW_STUDY, &file, error);
+        status = cp_yaml_parse(path, study->content, size, &CP_RAW_STUDY, &file, error);
     if (status != CP_OK)
         goto done;
     const cp_raw_study *raw = (const cp_raw_study *)file.data;

@@ -247,7 +247,7 @@ static void what_does_not_fit_is_refused(void **state)
         const char *words;
     } CASES[] = {
         {"racer", "    speeds_km_h: [40]\n    against: [same]\n    compare: [{quantity: olc_g}]\n",
-         "'racer' is no vehicle: allowed are the path of a file, or one of bus"},
+         "no vehicle 'racer' is shipped; a name must be one of bus"},
         {"mid_size",
          "    speeds_km_h: [40]\n    against: [racer]\n    compare: [{quantity: olc_g}]\n",
          "no vehicle 'racer' is shipped"},

@@ -270,6 +270,22 @@ with tempfile.TemporaryDirectory() as name:
     assert "poses.csv:52" in strict.stderr and not strict.stdout, strict
     assert "poses.csv:53" not in strict.stderr and not (folder / "strict.db").exists(), strict
 
+    # Likewise rows that cannot be read, or whose vehicles are none.
+    (folder / "rows.csv").write_text(
+        "\ufeffid;vehicle_a;vehicle_b;speed_a_km_h;speed_b_km_h;offset_mm;angle_deg\r\n"
+        "one;van;suv;50;40;0;0\r\ntwo;van;suv;fast;40;0;0\r\nthree;nonsense;suv;50;40;0;0\r\n"
+        "four;van;gone.yaml;50;40;0;0\r\none;van;suv;50;40;0;0\r\nsix;van;suv;50,5;40;0;0\r\nseven;suv;van;50;40;0;0\r\n")
+    words = ["--configurations", folder / "rows.csv", "--format", "csv"]
+    some = run(crashpulse, "assess", *words, expect=2)
+    for said in ("rows.csv:3: speed_a_km_h must be a number, found 'fast'; left out",
+                 "rows.csv:4: no vehicle 'nonsense' is shipped", "gone.yaml: cannot be read",
+                 "rows.csv:6: id 'one' is given twice", "rows.csv:7: speed_a_km_h must be a number, found '50,5'",
+                 "5 of 7 rows could not be assessed"):
+        assert said in some.stderr, (said, some.stderr)
+    assert [line.split(",")[2] for line in some.stdout.splitlines()[1:]] == ["one.a", "seven.a"], some.stdout
+    strict = run(crashpulse, "assess", *words, "--strict", expect=2)
+    assert "rows.csv:3" in strict.stderr and "rows.csv:4" not in strict.stderr and not strict.stdout, strict
+
     # Likewise a collision one of whose vehicles is not in the record.
     listed = (folder / "ours.coll.xml").read_text()
     name = re.search(r'collider="([^"]*)"', listed).group(1)

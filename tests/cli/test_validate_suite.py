@@ -136,6 +136,33 @@ class Shipped(unittest.TestCase):
             for row in shipped:
                 self.assertIn(f"(`{row['class']}`)", text)
 
+    def test_evidence_is_that_of_the_scorecard(self):
+        """Fails after a change of a scorecard, a vehicle or the boxes: cmake --build build --target evidence"""
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, os.path.join(VALIDATION, "evidence.py"), ARGS.crashpulse,
+                            "--output", folder], check=True)
+            new, shipped = ([row for row in csv.reader(io.StringIO(read(os.path.join(where, "evidence.csv"))))]
+                            for where in (folder, VALIDATION))
+            self.assertEqual(len(new), len(shipped))
+            error = shipped[1].index("error_1")
+            for one, other in zip(new[2:], shipped[2:]):
+                self.assertAlmostEqual(float(one[error]), float(other[error]), delta=2e-3, msg=str(other))
+                self.assertEqual(one[:error] + one[error + 1:], other[:error] + other[error + 1:])
+
+    @unittest.skipUnless(os.path.isdir(REFERENCES), f"{REFERENCES} is not there")
+    def test_vehicle_classes_are_those_of_the_tests(self):
+        script = os.path.join(ARGS.source, "db", "vehicles", "fleet")
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, os.path.join(script, "make_classes.py"), REFERENCES,
+                            "--output", folder], check=True)
+            subprocess.run([sys.executable, os.path.join(script, "make_heavy.py"), "--output", folder],
+                           check=True)
+            names = sorted(os.listdir(folder))
+            self.assertIn("classes.csv", names)
+            self.assertEqual(len(names), 1 + 2 * 7 + 4)
+            for name in names:
+                self.assertEqual(read(os.path.join(folder, name)), read(os.path.join(script, name)), name)
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0]])

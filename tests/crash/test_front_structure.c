@@ -19,7 +19,7 @@ static void build(cp_car *car, dWorldID world, const cp_vehicle_model *model,
                   const cp_body_state *state)
 {
     cp_error error = {0};
-    if (cp_car_build(car, model, CP_SIDE_FRONT, world, state, &error) != CP_OK)
+    if (cp_car_build(car, model, world, state, &error) != CP_OK)
         crash_builder_stop(&error);
 }
 
@@ -177,7 +177,7 @@ static void masses_that_do_not_fit_are_refused(void **state)
     cp_car car;
     cp_error error = {0};
     cp_body_state motion = {{0.0, 0.0}, 0.0, {0.0, 0.0}, 0.0};
-    assert_int_equal(cp_car_build(&car, &model, CP_SIDE_FRONT, world, &motion, &error), CP_BAD_INPUT);
+    assert_int_equal(cp_car_build(&car, &model, world, &motion, &error), CP_BAD_INPUT);
     assert_non_null(strstr(error.text, "yaw_inertia_kg_m2"));
     dWorldDestroy(world);
 }

@@ -24,6 +24,10 @@ const fuzz_target FUZZ_TARGET[] = {
     {"codec", fuzz_codec, 4096},
     {"sql", fuzz_sql, 4096},
     {"rows", fuzz_rows, 512},
+    {"iso_mme", fuzz_iso_mme, 8192},
+    {"lsdyna", fuzz_lsdyna, 8192},
+    {"pulse_file", fuzz_pulse_file, 8192},
+    {"location", fuzz_location, 2048},
 };
 const size_t FUZZ_TARGET_COUNT = sizeof FUZZ_TARGET / sizeof *FUZZ_TARGET;
 

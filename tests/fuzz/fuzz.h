@@ -44,10 +44,10 @@ void fuzz_must(int holds, const char *what);
 /* Part number of an input whose parts stand between lines "=====". */
 const uint8_t *fuzz_part(const uint8_t *data, size_t size, int number, size_t *part_size);
 
-/* Readers of files (fuzz_files.c), blobs (fuzz_codec.c), functions of SQL (fuzz_sql.c), rows of a
- * database (fuzz_rows.c). */
+/* Readers of files (fuzz_files.c, fuzz_pulses.c), blobs (fuzz_codec.c), functions of SQL
+ * (fuzz_sql.c), rows of a database (fuzz_rows.c). */
 fuzz_function fuzz_vehicle, fuzz_study, fuzz_fit, fuzz_suite, fuzz_reference, fuzz_configurations,
     fuzz_pulse_csv, fuzz_table, fuzz_ev5, fuzz_collisions, fuzz_fcd, fuzz_types, fuzz_sumocfg,
-    fuzz_codec, fuzz_sql, fuzz_rows;
+    fuzz_codec, fuzz_sql, fuzz_rows, fuzz_iso_mme, fuzz_lsdyna, fuzz_pulse_file, fuzz_location;
 
 #endif

@@ -172,6 +172,11 @@ static void olc_is_for_struck_fronts_only(void **state)
     assert_true(isnan(rows.crash->vehicle[1].severity.olc.olc_g));
     assert_true(rows.crash->vehicle[1].severity.delta_v_m_s > 1.0);
     assert_true((rows.crash->vehicle[1].outside & CP_OUTSIDE_CONTACT_SIDE) != 0);
+    // What OLC does not say of the struck one is there.
+    assert_string_equal(rows.crash->vehicle[0].intrusion_zone, "front");
+    assert_string_equal(rows.crash->vehicle[1].intrusion_zone, "rear");
+    assert_true(rows.crash->vehicle[1].intrusion_m > 0.05);
+    assert_true(rows.crash->vehicle[1].severity.asi_1 > 0.1);
     cp_result_rows_destroy(&rows);
 }
 
@@ -186,7 +191,8 @@ static void crash_without_simulation_is_kept(void **state)
         const cp_crash_vehicle_row *vehicle = &rows.crash->vehicle[role];
         assert_int_equal(vehicle->severity.olc.status, CP_OLC_SIMULATION_FAILED);
         assert_true(isnan(vehicle->severity.delta_v_m_s));
-        assert_true(isnan(vehicle->crush_m));
+        assert_true(isnan(vehicle->crush_m) && isnan(vehicle->intrusion_m));
+        assert_null(vehicle->intrusion_zone);
         assert_null(vehicle->pulse);
         assert_true(vehicle->speed_m_s == 15.0);
         assert_true((vehicle->outside & CP_OUTSIDE_NO_CONTACT) != 0);
@@ -272,6 +278,7 @@ static void what_touches_in_traffic_touches_in_the_crash(void **state)
         for (int role = 0; role < 2; role++)
             assert_non_null(rows.crash->vehicle[role].pulse);
         assert_true(rows.crash->vehicle[1].severity.delta_v_m_s > 0.1);
+        assert_string_equal(rows.crash->vehicle[1].intrusion_zone, "rear");
         assert_int_equal((rows.crash->vehicle[1].outside & CP_OUTSIDE_SIZE) != 0, k == 2);
         cp_result_rows_destroy(&rows);
     }

@@ -155,6 +155,10 @@ static void how_a_crash_came_is_stored(void **state)
     add_crash(&results, 1, 20, 20);
     add_crash(&results, 2, 20, 20); // nothing known of it
     fill_participants(&results.crash[0]);
+    cp_crash_vehicle_row *struck = &results.crash[0].vehicle[1];
+    struck->intrusion_m = 0.25;
+    struck->intrusion_zone = "rear_wheel";
+    struck->severity.max_50ms_y_g = 7.5;
     assert_ok(cp_result_rows_commit(store, &results, &error), &error);
     assert_true(number_of(store,
                           "SELECT sum(error_count) FROM crash_vehicle WHERE crash_id % 16384 "
@@ -166,6 +170,9 @@ static void how_a_crash_came_is_stored(void **state)
                           "SELECT count(*) FROM crash_vehicle WHERE mass_kg = 1401 AND role = "
                           "'b' AND lane = ':j_1_2_0' AND edge = ':j_1_2' AND junction IS "
                           "NULL") == 1);
+    assert_true(number_of(store,
+                          "SELECT count(*) FROM crash_vehicle WHERE intrusion_m = 0.25 AND role = "
+                          "'b' AND intrusion_zone = 'rear_wheel' AND max_50ms_y_g = 7.5") == 1);
     assert_true(number_of(store, "SELECT count(*) FROM crash_cause WHERE driver_error = "
                                  "'failed_to_see' AND role = 'a' AND causes = 1 AND began_s = "
                                  "2.5") == 1);

@@ -10,7 +10,7 @@ of their opponents is marked. README.md, "Heavy classes"."""
 import argparse
 import pathlib
 
-from make_classes import HERE, SIDE_KN_M, parameters_of
+from make_classes import HERE, SIDE, parameters_of, standard_values
 
 WEIGHTS = "between empty and the limit of Directive 96/53/EC, by judgement"
 SIZES = "SUMO's standard size of the class (vClass)"
@@ -58,7 +58,7 @@ def values_of(mass, length, width, cg, rail, box, upper, cell, engine, underride
 def struck(side, rear):
     """Side and rear, less what goes under them: twice a sedan's side; rear by its guard, then the frame."""
     source = "{:.0%} underride; " + BODY
-    values = {parameter: (2.0 * value * (1.0 - side), source.format(side)) for parameter, value in SIDE_KN_M.items()}
+    values = {parameter: (2.0 * value * (1.0 - side), source.format(side)) for parameter, value in standard_values(SIDE).items()}
     for parameter, value in (("rear_bumper_kn", 300), ("rear_collapse_begin_kn", 300), ("rear_collapse_end_kn", 1000)):
         values[parameter] = (value * (1.0 - rear), source.format(rear))
     return values

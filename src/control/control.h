@@ -32,7 +32,7 @@ typedef crashpulse_parameter cp_control_parameter;
             "share of vehicles equipped, drawn once per vehicle (assumed)"                         \
     }
 
-#define CP_CONTROL_PARAMETERS_MAX 40
+#define CP_CONTROL_PARAMETERS_MAX CRASHPULSE_PARAMETERS_MAX
 
 /* What a control sees when it acts. seed_key already holds study seed, replication seed and the
  * control's name: derive from it by vehicle ids and occasion only (core/rng.h). */

@@ -49,11 +49,25 @@ static void add(crashpulse_road *road, cp_pose frame, cp_vec2 point_m)
     road->point[k].curvature_1_m = 0.0;
 }
 
-static void tell_curvature(crashpulse_road *road)
+// The corner of the lane's line behind a place on it, as it is driven; the place itself without
+// one.
+static cp_vec2 corner_behind(const cp_lane *lane, double at_m, double step_1)
+{
+    const cp_lane_point *found = NULL;
+    for (size_t k = 0; k < lane->point_count; k++) {
+        double behind_m = step_1 * (at_m - lane->point[k].at_m);
+        if (behind_m > CLOSE_M && (found == NULL || behind_m < step_1 * (at_m - found->at_m)))
+            found = &lane->point[k];
+    }
+    return found != NULL ? (cp_vec2){found->x_m, found->y_m} : centre_at(lane, at_m);
+}
+
+// At corners by the pieces on both sides, of which the first begins behind the car.
+static void tell_curvature(crashpulse_road *road, cp_vec2 behind)
 {
     for (size_t k = 1; k + 1 < road->count; k++)
-        road->point[k].curvature_1_m =
-            curvature_1_m(point_of(road, k - 1), point_of(road, k), point_of(road, k + 1));
+        road->point[k].curvature_1_m = curvature_1_m(k > 1 ? point_of(road, k - 1) : behind,
+                                                     point_of(road, k), point_of(road, k + 1));
     if (road->count > 2) {
         road->point[0].curvature_1_m = road->point[1].curvature_1_m;
         road->point[road->count - 1].curvature_1_m = road->point[road->count - 2].curvature_1_m;
@@ -89,7 +103,13 @@ cp_status cp_function_road(const cp_traffic *traffic, cp_road_view *view,
     }
     if (road->count < 2)
         return CP_OK;
-    tell_curvature(road);
+    const cp_way_point *front = &way->corner[way->front];
+    const cp_lane *first = cp_lane_map_lane(map, front->lane);
+    bool is_laid = first != NULL && first->point_count > 1;
+    cp_vec2 behind = point_of(road, 0);
+    if (is_laid)
+        behind = cp_pose_to_local(frame, corner_behind(first, front->lane_at_m, way->lane_step_1));
+    tell_curvature(road, behind);
     road->lane_left_m = left_of_line_m(road);
     road->lane_width_m = lane->width_m;
     if (lane->speed_limit_m_s > 0.0)

@@ -2,7 +2,6 @@
 #include "control/library.h"
 
 #include "control/acting.h"
-#include "control/control.h"
 
 #include <dlfcn.h>
 #include <fenv.h>
@@ -12,7 +11,6 @@
 #include <string.h>
 
 #define ENTRY "crashpulse_function_entry"
-#define COUNTERS_MAX 16
 #define CAR_SIZE_MAX (1u << 20)
 
 // ---- what the study says -------------------------------------------------------------------
@@ -95,14 +93,15 @@ static cp_status check(const cp_library *library, const crashpulse_function *fun
                        "%s: is built for version %u of crashpulse/function.h, this crashpulse has "
                        "version %u",
                        library->written, function->abi, CRASHPULSE_FUNCTION_ABI);
-    if (function->step == NULL || function->parameter_count > CP_CONTROL_PARAMETERS_MAX ||
-        function->counter_count > COUNTERS_MAX || function->car_size > CAR_SIZE_MAX ||
+    if (function->step == NULL || function->parameter_count > CRASHPULSE_PARAMETERS_MAX ||
+        function->counter_count > CRASHPULSE_COUNTERS_MAX || function->car_size > CAR_SIZE_MAX ||
         (function->parameter_count > 0 && function->parameters == NULL) ||
         (function->counter_count > 0 && function->counter_names == NULL))
         return cp_fail(error, CP_RUN_FAILED,
                        "%s: must have a step, at most %d parameters, %d counters and %u bytes a "
                        "car",
-                       library->written, CP_CONTROL_PARAMETERS_MAX, COUNTERS_MAX, CAR_SIZE_MAX);
+                       library->written, CRASHPULSE_PARAMETERS_MAX, CRASHPULSE_COUNTERS_MAX,
+                       CAR_SIZE_MAX);
     return check_table(library, function, error);
 }
 

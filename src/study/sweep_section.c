@@ -489,7 +489,7 @@ static cp_status apply(const sweep *s, bool of_scenario, size_t owner, size_t at
             status = give_value(&control->library->given[a->given - 1], value, error);
         else if (a->share > 0)
             control->shares[a->share - 1].penetration_1 = value;
-        else
+        else if (scenario != NULL)
             status = set_option(a, value, scenario, error);
     }
     return status;

@@ -35,6 +35,8 @@ extern "C" {
 /* Goes up when anything below changes its meaning or place; the host takes only its own. */
 #define CRASHPULSE_FUNCTION_ABI 1u
 
+#define CRASHPULSE_PARAMETERS_MAX 40 /* of a function's table */
+#define CRASHPULSE_COUNTERS_MAX 16   /* of its own */
 #define CRASHPULSE_NOBODY UINT32_MAX
 /* In a request: not asked for. (Not NAN: what comes out of a wrong sum is a fault, not a wish.) */
 #define CRASHPULSE_NONE (-1e300)
@@ -202,9 +204,9 @@ typedef struct crashpulse_function {
     uint32_t does;
     const char *what; /* one line */
     const crashpulse_parameter *parameters;
-    size_t parameter_count; /* at most 40 */
+    size_t parameter_count; /* at most CRASHPULSE_PARAMETERS_MAX */
     const char *const *counter_names;
-    size_t counter_count; /* at most 16 */
+    size_t counter_count; /* at most CRASHPULSE_COUNTERS_MAX */
     size_t car_size; /* bytes of memory of each car, zero when it comes; may move between steps */
     /* Once for a replication or branch. Returns NULL, or what is wrong; *self (may stay NULL) goes
      * to the others. */

@@ -90,9 +90,10 @@ static void no_memory(void)
 static void shield_comments(int argc, char **argv)
 {
     for (int k = 1; k < argc; k++) {
-        const char *behind = argv[k] + 2 * (strncmp(argv[k], "--", 2) == 0);
-        behind += strcspn(behind, " \t\n=");
-        if (strncmp(argv[k], "--", 2) != 0 || strchr(" \t\n", *behind) == NULL || *behind == '\0')
+        if (strncmp(argv[k], "--", 2) != 0)
+            continue;
+        char behind = argv[k][2 + strcspn(argv[k] + 2, " \t\n=")];
+        if (behind == '\0' || behind == '=')
             continue;
         char *shielded = malloc(strlen(argv[k]) + 2);
         if (shielded == NULL)

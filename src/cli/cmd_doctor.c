@@ -10,11 +10,14 @@
 #include "run/confinement.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <math.h>
+#include <spawn.h>
 #include <stdarg.h>
 #include <string.h>
 #include <sys/statvfs.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 /* What must be there for the program to work, each looked at once. */
@@ -47,31 +50,65 @@ static void note(examination *x, const char *what, finding found, const char *ad
 
 // ---- programs of others --------------------------------------------------------------------
 
-// First line of what a command of ours, without anything from outside in it, prints.
-static bool first_line(const char *command, char *line, int size)
+extern char **environ;
+
+// Start a program of the PATH with --version; *pid and the end of a pipe that has its stdout, or
+// -1.
+static int start(const char *program, pid_t *pid)
 {
-    FILE *pipe = popen(command, "r");
-    bool there = pipe != NULL && fgets(line, size, pipe) != NULL;
-    line[there ? strcspn(line, "\n") : 0] = '\0';
-    // To its end: one that nobody reads on for fails.
-    while (there && fgetc(pipe) != EOF)
-        continue;
-    return pipe != NULL && pclose(pipe) == 0 && there;
+    char *const words[] = {(char *)program, (char *)"--version", NULL};
+    int ends[2];
+    posix_spawn_file_actions_t actions;
+    if (pipe(ends) != 0)
+        return -1;
+    int failed = posix_spawn_file_actions_init(&actions);
+    if (failed == 0) {
+        posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+        posix_spawn_file_actions_addclose(&actions, ends[0]);
+        posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+        failed = posix_spawnp(pid, program, &actions, NULL, words, environ);
+        posix_spawn_file_actions_destroy(&actions);
+    }
+    close(ends[1]);
+    if (failed == 0)
+        return ends[0];
+    close(ends[0]);
+    return -1;
 }
 
-static void look_at_program(examination *x, const char *name, const char *command, finding if_not,
-                            const char *package, const char *use)
+// First line of what a program says of its version; false when there is none that ends well.
+static bool first_line(const char *program, char *line, int size)
+{
+    pid_t pid = 0;
+    int code = 0;
+    int end = start(program, &pid);
+    FILE *said = end >= 0 ? fdopen(end, "r") : NULL;
+    bool there = said != NULL && fgets(line, size, said) != NULL;
+    line[there ? strcspn(line, "\n") : 0] = '\0';
+    // To its end: one that nobody reads on for fails.
+    while (there && fgetc(said) != EOF)
+        continue;
+    if (said != NULL)
+        fclose(said);
+    else if (end >= 0)
+        close(end);
+    return end >= 0 && waitpid(pid, &code, 0) == pid && WIFEXITED(code) && WEXITSTATUS(code) == 0 &&
+           there;
+}
+
+static void look_at_program(examination *x, const char *name, finding if_not, const char *package,
+                            const char *use)
 {
     char line[256], advice[512];
     snprintf(advice, sizeof advice, "apt-get install %s (%s)", package, use);
-    bool there = first_line(command, line, sizeof line);
+    bool there = first_line(name, line, sizeof line);
     note(x, name, there ? FINE : if_not, advice, "%s", there ? line : "not found in PATH");
 }
 
 static void look_at_programs(examination *x)
 {
     char line[256];
-    bool there = first_line("sumo --version 2>/dev/null", line, sizeof line);
+    bool there = first_line("sumo", line, sizeof line);
     bool known = there && strstr(line, " 1.15.") != NULL;
     note(x, "sumo",
          known   ? FINE
@@ -80,12 +117,9 @@ static void look_at_programs(examination *x)
          there ? "results were checked with SUMO 1.15; run the tests before trusting another"
                : "apt-get install sumo (traffic)",
          "%s", there ? line : "not found in PATH");
-    look_at_program(x, "netconvert", "netconvert --version 2>/dev/null", WANTED, "sumo",
-                    "makes networks");
-    look_at_program(x, "sqlite3", "sqlite3 --version 2>/dev/null", WANTED, "sqlite3",
-                    "'crashpulse sql DB' without a query");
-    look_at_program(x, "gnuplot", "gnuplot --version 2>/dev/null", WANTED, "gnuplot-nox",
-                    "'crashpulse plot'");
+    look_at_program(x, "netconvert", WANTED, "sumo", "makes networks");
+    look_at_program(x, "sqlite3", WANTED, "sqlite3", "'crashpulse sql DB' without a query");
+    look_at_program(x, "gnuplot", WANTED, "gnuplot-nox", "'crashpulse plot'");
 }
 
 // ---- parts of our own ----------------------------------------------------------------------

@@ -44,10 +44,14 @@ static size_t write_json_string(const char *text, char *to, size_t size)
     size_t used = 0;
     to[used++] = '"';
     for (; *text != '\0' && used + 4 < size; text++) {
-        bool escaped = strchr("\"\\\n\t", *text) != NULL;
-        if (escaped)
+        char c = *text;
+        if (strchr("\"\\\n\t", c) != NULL)
             to[used++] = '\\';
-        to[used++] = *text == '\n' ? 'n' : *text == '\t' ? 't' : *text;
+        if (c == '\n')
+            c = 'n';
+        if (c == '\t')
+            c = 't';
+        to[used++] = c;
     }
     to[used++] = '"';
     to[used] = '\0';

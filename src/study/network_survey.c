@@ -55,9 +55,17 @@ static void count_connection(cp_network_survey *survey, const cp_xml_element *el
 static void measure(cp_network_survey *survey, const cp_xml_element *element)
 {
     const char *box = cp_xml_attribute(element, "convBoundary");
-    double x0, y0, x1, y1;
-    if (box != NULL && sscanf(box, "%lf,%lf,%lf,%lf", &x0, &y0, &x1, &y1) == 4)
-        survey->diagonal_m = fmax(survey->diagonal_m, hypot(x1 - x0, y1 - y0));
+    double corner[4] = {0.0}; // x0,y0,x1,y1
+    size_t read = 0;
+    while (box != NULL && read < 4) {
+        char *end = NULL;
+        corner[read] = strtod(box, &end);
+        read += end != box;
+        box = end != box && *end == ',' ? end + 1 : NULL;
+    }
+    if (read == 4)
+        survey->diagonal_m =
+            fmax(survey->diagonal_m, hypot(corner[2] - corner[0], corner[3] - corner[1]));
 }
 
 // ---- demand --------------------------------------------------------------------------------
@@ -104,7 +112,8 @@ static cp_status visit_element(void *context, const cp_xml_element *element, cp_
         measure(survey, element);
     } else if (is(element, "lane")) {
         const char *speed = cp_xml_attribute(element, "speed");
-        survey->speed_max_m_s = fmax(survey->speed_max_m_s, speed != NULL ? atof(speed) : 0.0);
+        survey->speed_max_m_s =
+            fmax(survey->speed_max_m_s, speed != NULL ? strtod(speed, NULL) : 0.0);
     } else if (is(element, "vehicle") || is(element, "trip")) {
         survey->departures++;
         note_time(survey, element, "depart");

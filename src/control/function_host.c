@@ -46,14 +46,15 @@ typedef struct host_car {
     cp_function_car does;
 } host_car;
 
-static size_t memory_offset(void)
+// Rows of cars lie one behind the other: all that is in them stands on even addresses.
+static size_t aligned(size_t size)
 {
-    return (sizeof(host_car) + CAR_ALIGNMENT - 1) / CAR_ALIGNMENT * CAR_ALIGNMENT;
+    return (size + CAR_ALIGNMENT - 1) / CAR_ALIGNMENT * CAR_ALIGNMENT;
 }
 
 static void *memory_of(host_car *car)
 {
-    return (unsigned char *)car + memory_offset();
+    return (unsigned char *)car + aligned(sizeof *car);
 }
 
 // ---- calls ---------------------------------------------------------------------------------
@@ -219,8 +220,8 @@ cp_status cp_function_host_create(const cp_control_context *context, void **stat
     fegetenv(&host->arithmetic);
     cp_status status = find_function(host, context, error);
     if (status == CP_OK) {
-        host->cars =
-            cp_vehicle_table_create(memory_offset() + host->function->car_size, release_car);
+        host->cars = cp_vehicle_table_create(
+            aligned(sizeof(host_car)) + aligned(host->function->car_size), release_car);
         host->counter = calloc(host->function->counter_count + 1, sizeof *host->counter);
         status = host->counter != NULL ? create_function(host, context, error)
                                        : cp_fail_memory(error, "function");

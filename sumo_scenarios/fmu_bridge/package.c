@@ -76,9 +76,11 @@ static bool unpack(const entry *from, const unsigned char *packed, unsigned char
                        .avail_in = (unsigned)from->packed,
                        .next_out = plain,
                        .avail_out = (unsigned)from->plain};
+    if (from->method == 0 && from->packed != from->plain)
+        return false;
     if (from->method == 0) {
         memcpy(plain, packed, from->plain);
-        return from->packed == from->plain;
+        return true;
     }
     if (from->method != 8 || inflateInit2(&stream, -MAX_WBITS) != Z_OK)
         return false;

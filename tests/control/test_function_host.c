@@ -24,14 +24,16 @@ static struct probe {
     crashpulse_road road;
     bool is_road;
     size_t left;
+    size_t steps, odd; /* steps of cars whose memory stands where not everything may stand */
 } probe;
 
 static const char *probe_step(void *self, void *car, const crashpulse_view *view,
                               crashpulse_request *request)
 {
     (void)self;
-    (void)car;
     const crashpulse_object *objects;
+    probe.steps++;
+    probe.odd += (uintptr_t)car % _Alignof(max_align_t) != 0;
     probe.known = 0;
     if (probe.looks && (probe.known = view->host->look(view, &objects)) > 0)
         probe.object = objects[0];
@@ -147,6 +149,27 @@ static void objects_are_told_in_the_cars_frame(void **unused)
     assert_int_equal(probe.left, 1);
 }
 
+// Of a function that needs one byte a car, too.
+static void memory_of_cars_is_aligned(void **unused)
+{
+    (void)unused;
+    cp_controls *controls;
+    cp_error error = {0};
+    cp_control_settings settings = cp_control_settings_default(&CP_CONTROL_PROBE);
+    lay_bend(80.0, 1.0, 100.0);
+    cp_traffic *traffic = open_bend_road(STEP_S);
+    probe = (struct probe){.acceleration_m_s2 = CRASHPULSE_NONE};
+    assert_int_equal(cp_controls_create(&settings, 1, 1, 1, traffic, &controls, &error), CP_OK);
+    add_car("one", 0, 20.0, 1.0, 10.0);
+    add_car("two", 0, 40.0, 1.0, 10.0);
+    add_car("three", 0, 60.0, 1.0, 10.0);
+    steps(traffic, controls, 3);
+    assert_int_equal(probe.steps, 9);
+    assert_int_equal(probe.odd, 0);
+    end(traffic, controls);
+    assert_int_equal(probe.left, 3);
+}
+
 static void it_drives_as_it_asks(void **unused)
 {
     (void)unused;
@@ -209,6 +232,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(the_road_is_told_as_it_is),
                                        cmocka_unit_test(objects_are_told_in_the_cars_frame),
+                                       cmocka_unit_test(memory_of_cars_is_aligned),
                                        cmocka_unit_test(it_drives_as_it_asks),
                                        cmocka_unit_test(what_goes_wrong_has_a_name),
                                        cmocka_unit_test(a_library_has_to_be_named)};

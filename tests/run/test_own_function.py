@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Functions that a study brings along: the shipped example, built by its own CMake against a prefix with
-the header, in a study; ours built as libraries, which give the databases of the built-in ones; and
+"""Functions that a study brings along: the shipped example, built by its own CMake against what is
+installed, in a study and a matrix; ours built as libraries, which give the databases of the built-in ones; and
 faulty ones, which fail their replications by name and nothing else."""
 import argparse
 import json
@@ -20,6 +20,7 @@ parser = argparse.ArgumentParser()
 parser.add_argument("--crashpulse", required=True)
 parser.add_argument("--network", required=True)
 parser.add_argument("--source", required=True)
+parser.add_argument("--build", required=True, help="folder that is installed from")
 parser.add_argument("--libraries", required=True, help="folder of those built for this test")
 arguments = parser.parse_args()
 arguments.crashpulse = str(pathlib.Path(arguments.crashpulse).resolve())
@@ -36,12 +37,11 @@ def run(study, db, *words, expect=0):
 
 
 def the_example_in_its_study(folder):
-    """Built outside the tree, against a prefix with nothing but the header."""
+    """Built outside the tree, against a prefix with what src/api installs."""
     assert len((EXAMPLE / "my_aeb.c").read_text().splitlines()) < 100
     prefix, own = folder / "prefix", folder / "sumo_scenarios/own_function"
-    (prefix / "include/crashpulse").mkdir(parents=True)
-    shutil.copy(pathlib.Path(arguments.source) / "src/api/crashpulse/function.h",
-                prefix / "include/crashpulse")
+    subprocess.run(["cmake", "--install", pathlib.Path(arguments.build) / "src/api", "--prefix", prefix],
+                   check=True, stdout=subprocess.DEVNULL)
     shutil.copytree(EXAMPLE, own, ignore=shutil.ignore_patterns("build"))
     for name in ("left_turn", "head_on_drift"):
         shutil.copytree(EXAMPLE.parent / name, folder / "sumo_scenarios" / name)

@@ -91,8 +91,8 @@ CRASHES = [
     ("honda_accord_2014", None, "--speed", "56"),
     ("toyota_camry_2018", None, "--speed", "57.09"),
     ("honda_accord_2014", "honda_accord_2014", "--speed", "56"),
-    ("small_car", "suv", "--speed", "60", "--opponent-speed", "40", "--offset", "500"),
-    ("honda_accord_2014", "van", "--speed", "20", "--opponent-speed", "30", "--angle", "-25"),
+    ("fleet/small_car", "fleet/suv", "--speed", "60", "--opponent-speed", "40", "--offset", "500"),
+    ("honda_accord_2014", "fleet/van", "--speed", "20", "--opponent-speed", "30", "--angle", "-25"),
 ]
 
 

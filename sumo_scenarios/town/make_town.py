@@ -87,11 +87,11 @@ for k, (start, goal) in enumerate(flows):
 rows.sort()
 common = ('decel="3.5" emergencyDecel="8.0" sigma="0.4" actionStepLength="0.8" lcOpposite="1" '
           'speedFactor="normc(0.95,0.12,0.7,1.25)"')
-# Each names the model that it crashes as, and has the size of one (README, "Which car a SUMO vehicle
+# Each names the class that it crashes as, and has its size (sumo_scenarios/README.md, "Which car a SUMO vehicle
 # crashes as"): whatever default a study has, a van stays a van.
 types = [("small_car", 0.24, 3.9, 1.72, 1.5, 2.6, "passenger", "small_car"),
-         ("compact_car", 0.26, 4.3, 1.79, 1.45, 2.6, "passenger", "small_car"),
-         ("mid_size_car", 0.22, 4.6, 1.83, 1.47, 2.6, "passenger", "honda_accord_2014"),
+         ("compact_car", 0.26, 4.3, 1.79, 1.45, 2.6, "passenger", "compact_car"),
+         ("mid_size_car", 0.22, 4.6, 1.83, 1.47, 2.6, "passenger", "mid_size_car"),
          ("suv", 0.16, 4.7, 1.90, 1.7, 2.4, "passenger", "suv"),
          ("van", 0.12, 5.9, 2.02, 2.5, 1.8, "delivery", "van")]
 vtypes = "\n".join(f'        <vType id="{n}" vClass="{c}" probability="{p}" length="{l}" width="{w}" '

@@ -119,11 +119,11 @@ static void list_types(const cp_network_survey *survey, FILE *file)
 
 static void write_types(const cp_network_survey *survey, FILE *file)
 {
-    fputs("# What the cars of SUMO crash as. Without this section every vehicle type gets the\n"
-          "# shipped model that its class and size fit; types without one are named at the end\n"
-          "# of a run, with the line that maps them.\n"
-          "# vehicles:\n"
-          "#   default: honda_accord_2014\n"
+    fputs("# What the cars of SUMO crash as: each is drawn from a vehicle class by the vClass and\n"
+          "# size of its type. Types without one are named at the end of a run, with the line that\n"
+          "# maps them.\n"
+          "vehicles:\n"
+          "  fleet: default\n"
           "#   types:\n"
           "#     - {type: my_type, model: van}   # a shipped model, or a file: ./my_van.yaml\n",
           file);

@@ -44,7 +44,7 @@ def the_example_in_its_study(folder):
                    check=True, stdout=subprocess.DEVNULL)
     shutil.copytree(EXAMPLE, own, ignore=shutil.ignore_patterns("build"))
     for name in ("left_turn", "head_on_drift"):
-        shutil.copytree(EXAMPLE.parent / name, folder / "sumo_scenarios" / name)
+        shutil.copytree(pathlib.Path(arguments.build) / "sumo_scenarios" / name, folder / "sumo_scenarios" / name)
     shutil.copytree(EXAMPLE.parent.parent / "db/vehicles", folder / "db/vehicles")
     subprocess.run(["cmake", "-S", own, "-B", own / "build", f"-DCMAKE_PREFIX_PATH={prefix}"],
                    check=True, stdout=subprocess.DEVNULL)

@@ -31,9 +31,9 @@ typedef struct cp_iso_mme_test {
     cp_iso_mme_object object[2];
 } cp_iso_mme_test;
 
-/* Write the folder <test> into folder, that of a cp_output_folder under way. Of each object: the known channels of its
- * record, and the accelerations through CFC60 where its sampling allows. Errors: CP_BAD_INPUT for a
- * name with other characters; CP_IO_FAILED; CP_NO_MEMORY. */
+/* Write the folder <test> into folder, that of a cp_output_folder under way. Of each object: the
+ * known channels of its record, and the accelerations through CFC60 where its sampling allows.
+ * Errors: CP_BAD_INPUT for a name with other characters; CP_IO_FAILED; CP_NO_MEMORY. */
 CP_MUST_CHECK cp_status cp_iso_mme_write(const char *folder, const cp_iso_mme_test *test,
                                          cp_error *error);
 

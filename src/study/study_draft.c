@@ -119,14 +119,15 @@ static void list_types(const cp_network_survey *survey, FILE *file)
 
 static void write_types(const cp_network_survey *survey, FILE *file)
 {
-    fputs("# What the cars of SUMO crash as: each is drawn from a vehicle class by the vClass and\n"
-          "# size of its type. Types without one are named at the end of a run, with the line that\n"
-          "# maps them.\n"
-          "vehicles:\n"
-          "  fleet: default\n"
-          "#   types:\n"
-          "#     - {type: my_type, model: van}   # a shipped model, or a file: ./my_van.yaml\n",
-          file);
+    fputs(
+        "# What the cars of SUMO crash as: each is drawn from a vehicle class by the vClass and\n"
+        "# size of its type. Types without one are named at the end of a run, with the line that\n"
+        "# maps them.\n"
+        "vehicles:\n"
+        "  fleet: default\n"
+        "#   types:\n"
+        "#     - {type: my_type, model: van}   # a shipped model, or a file: ./my_van.yaml\n",
+        file);
     list_types(survey, file);
 }
 

@@ -55,6 +55,24 @@ static const char *interval_text(const cp_quantity *q, char text[TEXT_SIZE])
     return text;
 }
 
+static bool is_p_value(const cp_quantity *q)
+{
+    size_t length = strlen(q->name);
+    return (length > 2 && strcmp(q->name + length - 2, "_p") == 0) ||
+           (length > 7 && strcmp(q->name + length - 7, "_p_holm") == 0);
+}
+
+// A p-value that its digits would round to zero is below the least that they can show.
+static const char *value_text(const cp_quantity *q, cp_estimate estimate, int digits,
+                              char text[TEXT_SIZE])
+{
+    double least = pow(10.0, -digits);
+    if (!is_p_value(q) || !(estimate.value < 0.5 * least))
+        return cp_estimate_text(estimate, digits, text);
+    snprintf(text, TEXT_SIZE, "<%.*f", digits, least);
+    return text;
+}
+
 // One row of estimates and, where there is one, a row of intervals below it.
 static void add_rows(cp_table *table, const columns *c, size_t row)
 {
@@ -68,8 +86,8 @@ static void add_rows(cp_table *table, const columns *c, size_t row)
             const cp_quantity *q = &c->list[k].row[row];
             cp_estimate estimate = q->estimate;
             estimate.value *= first->factor;
-            cp_table_text(table, q->missing ? q->missing
-                                            : cp_estimate_text(estimate, first->digits, text));
+            cp_table_text(table,
+                          q->missing ? q->missing : value_text(q, estimate, first->digits, text));
         }
     }
     if (!first->kind)

@@ -15,6 +15,7 @@ import unittest
 parser = argparse.ArgumentParser()
 parser.add_argument("--crashpulse", required=True)
 parser.add_argument("--source", required=True, help="the project's folder")
+parser.add_argument("--few", action="store_true", help="one vehicle's scorecard: with sanitizers all take minutes")
 ARGS = parser.parse_args()
 
 VALIDATION = os.path.join(ARGS.source, "db", "validation")
@@ -119,10 +120,18 @@ class Shipped(unittest.TestCase):
     def test_the_scorecard_is_of_the_shipped_vehicles(self):
         """Fails after a change of a vehicle or of the crash model: cmake --build build --target scorecard"""
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([sys.executable, os.path.join(VALIDATION, "scorecard.py"), ARGS.crashpulse,
-                            "--output", folder], check=True)
-            new, shipped = (list(csv.DictReader(io.StringIO(read(os.path.join(where, "scorecard.csv")))))
-                            for where in (folder, VALIDATION))
+            shipped = list(csv.DictReader(io.StringIO(read(os.path.join(VALIDATION, "scorecard.csv")))))
+            if ARGS.few:
+                new = rows("--vehicle", "mid_size")
+                shipped = [row for row in shipped if row["vehicle"] == "mid_size"]
+                # Classes of another vehicle alone are skipped with a word where this one is asked for.
+                own = {row["class"] for row in shipped}
+                new = [{name: row[name] for name in shipped[0] if name in row} for row in new
+                       if row["class"] in own]
+            else:
+                subprocess.run([sys.executable, os.path.join(VALIDATION, "scorecard.py"), ARGS.crashpulse,
+                                "--output", folder], check=True)
+                new = list(csv.DictReader(io.StringIO(read(os.path.join(folder, "scorecard.csv")))))
             self.assertEqual(len(new), len(shipped))
             for one, other in zip(new, shipped):
                 for column, value in one.items():
@@ -136,6 +145,7 @@ class Shipped(unittest.TestCase):
             for row in shipped:
                 self.assertIn(f"(`{row['class']}`)", text)
 
+    @unittest.skipIf(ARGS.few, "of all vehicles")
     def test_evidence_is_that_of_the_scorecard(self):
         """Fails after a change of a scorecard, a vehicle or the boxes: cmake --build build --target evidence"""
         with tempfile.TemporaryDirectory() as folder:

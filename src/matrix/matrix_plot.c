@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "matrix/matrix_result.h"
 
-#include "core/file.h"
-#include "core/scratch.h"
+#include "core/gnuplot.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -110,42 +109,6 @@ static bool terminal_of(const char *path, const layout *l, char terminal[TERMINA
     return true;
 }
 
-static cp_status run_gnuplot(cp_scratch *scratch, const char *script, const char *data,
-                             cp_error *error)
-{
-    static const char *const WORDS[] = {"gnuplot", "--default-settings", "script", NULL};
-    int code = 0;
-    cp_status status = cp_scratch_write(scratch, "script", &script, 1, error);
-    if (status == CP_OK)
-        status = cp_scratch_write(scratch, "data", &data, 1, error);
-    if (status == CP_OK)
-        status = cp_scratch_run(scratch, WORDS, &code, error);
-    if (status == CP_BAD_INPUT)
-        return cp_fail(error, CP_BAD_INPUT,
-                       "gnuplot is missing; on Debian: apt-get install gnuplot-nox");
-    if (status == CP_OK && code != 0)
-        status = cp_fail(error, CP_RUN_FAILED, "gnuplot failed, see its words above");
-    return status;
-}
-
-static cp_status draw(const char *script, const char *data, const char *path, cp_error *error)
-{
-    cp_scratch scratch;
-    char *figure = NULL;
-    size_t size = 0;
-    cp_status status = cp_scratch_open(&scratch, error);
-    if (status != CP_OK)
-        return status;
-    status = run_gnuplot(&scratch, script, data, error);
-    if (status == CP_OK)
-        status = cp_scratch_read(&scratch, "figure", &figure, &size, error);
-    if (status == CP_OK)
-        status = cp_file_write(path, figure, size, error);
-    free(figure);
-    cp_scratch_close(&scratch);
-    return status;
-}
-
 cp_status cp_matrix_plot(const cp_matrix *matrix, const cp_matrix_result *result, const char *path,
                          cp_error *error)
 {
@@ -163,7 +126,8 @@ cp_status cp_matrix_plot(const cp_matrix *matrix, const cp_matrix_result *result
     }
     good = (to_script == NULL || fclose(to_script) == 0) && good;
     good = (to_data == NULL || fclose(to_data) == 0) && good;
-    cp_status status = good ? draw(script, data, path, error) : cp_fail_memory(error, "figure");
+    cp_status status = good ? cp_gnuplot_draw((const char *const[]){script}, 1, data, path, error)
+                            : cp_fail_memory(error, "figure");
     free(script);
     free(data);
     return status;

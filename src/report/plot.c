@@ -2,9 +2,8 @@
 #include "report/plot.h"
 
 #include "analysis/slice_sample.h"
-#include "core/file.h"
+#include "core/gnuplot.h"
 #include "core/memory_stream.h"
-#include "core/scratch.h"
 #include "report/plot_data.h"
 
 #include <math.h>
@@ -288,46 +287,13 @@ static const char *const SCRIPT[CP_PLOT_KIND_COUNT] = {
 
 #define TERMINAL_SIZE 128
 
-// Let gnuplot work in a folder of its own, where all files have names of ours.
-static cp_status run_gnuplot(const char *terminal, const char *numbers, const char *script,
-                             const char *data, cp_scratch *scratch, cp_error *error)
-{
-    static const char *const WORDS[] = {"gnuplot", "--default-settings", "script", NULL};
-    const char *const parts[] = {"set terminal ", terminal,     "\nset output \"figure\"\n",
-                                 numbers,         BEGIN_SCRIPT, script,
-                                 "unset output\n"};
-    int code = 0;
-    cp_status status =
-        cp_scratch_write(scratch, "script", parts, sizeof parts / sizeof *parts, error);
-    if (status == CP_OK)
-        status = cp_scratch_write(scratch, "data", &data, 1, error);
-    if (status == CP_OK)
-        status = cp_scratch_run(scratch, WORDS, &code, error);
-    if (status == CP_BAD_INPUT)
-        return cp_fail(error, CP_BAD_INPUT,
-                       "gnuplot is missing; on Debian: apt-get install gnuplot-nox");
-    if (status == CP_OK && code != 0)
-        status = cp_fail(error, CP_RUN_FAILED, "gnuplot failed, see its words above");
-    return status;
-}
-
 static cp_status draw(const char *terminal, const char *numbers, const char *script,
                       const char *data, const char *path, cp_error *error)
 {
-    cp_scratch scratch;
-    char *figure = NULL;
-    size_t size = 0;
-    cp_status status = cp_scratch_open(&scratch, error);
-    if (status != CP_OK)
-        return status;
-    status = run_gnuplot(terminal, numbers, script, data, &scratch, error);
-    if (status == CP_OK)
-        status = cp_scratch_read(&scratch, "figure", &figure, &size, error);
-    if (status == CP_OK)
-        status = cp_file_write(path, figure, size, error);
-    free(figure);
-    cp_scratch_close(&scratch);
-    return status;
+    const char *const parts[] = {"set terminal ", terminal,     "\nset output \"figure\"\n",
+                                 numbers,         BEGIN_SCRIPT, script,
+                                 "unset output\n"};
+    return cp_gnuplot_draw(parts, sizeof parts / sizeof *parts, data, path, error);
 }
 
 /* Height of a panel besides the first, of one figure's. */

@@ -21,7 +21,7 @@ typedef struct arguments {
 
 enum {
     COLLISIONS = 'c',
-    FCD = 'f',
+    FCD = 257, /* -f is the format */
     CONFIGURATIONS = 'l',
     ROUTES = 'r',
     VEHICLE = 'v',

@@ -26,12 +26,12 @@ typedef struct arguments {
     cp_format format;
 } arguments;
 
-enum { PLOT = 256, LIBRARY, ALLOW_PLUGINS };
+enum { PLOT = 256, FUNCTION, LIBRARY, ALLOW_PLUGINS };
 
 static const struct argp_option OPTIONS[] = {
     {"db", 'd', "FILE", 0,
      "database of the runs; network, demand and study are written into FILE.study", 0},
-    {"function", 'f', "NAME", 0,
+    {"function", FUNCTION, "NAME", 0,
      "this function with its defaults, in place of those that the file lists", 0},
     {"library", LIBRARY, "FILE", 0, "a function from this shared library in their place", 0},
     {"plot", PLOT, "FILE", 0, "map of impact speeds, into a file ending in .svg or .pdf", 0},
@@ -54,7 +54,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case 'd':
         a->db_path = argument;
         return 0;
-    case 'f':
+    case FUNCTION:
         a->function = argument;
         return 0;
     case LIBRARY:

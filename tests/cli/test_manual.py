@@ -32,6 +32,9 @@ options = 0
 for command in commands:
     page = (arguments.manual / "man1" / f"crashpulse-{command}.1").read_text().replace("\\-", "-")
     completed = complete("crashpulse", command, "--")
+    # -f is the format wherever there is one.
+    short = re.findall(r"^ {1,6}-f, (--[a-z-]+)", help_of(command), re.M)
+    assert short == (["--format"] if "--format=" in help_of(command) else []), (command, short)
     for option in re.findall(r"^ {1,6}(?:-\S, )?(--[a-z0-9-]+)", help_of(command), re.M):
         options += 1
         assert re.search(rf"^\.TP\n.*{option}\b", page, re.M), (command, option)
@@ -44,6 +47,6 @@ if shutil.which("man"):
         shown = subprocess.run(["man", "--warnings", "-l", page], capture_output=True, text=True,
                                env={"PATH": "/usr/bin:/bin", "LC_ALL": "C.UTF-8", "MANWIDTH": "100", "MANPAGER": "cat"})
         if "has been minimized" in shown.stdout + shown.stderr:
-            print("man is a stub here: pages are not formatted")
+            print("this system's man shows no pages: they are not formatted")
             break
         assert shown.returncode == 0 and shown.stderr == "" and "NAME" in shown.stdout, (page, shown.stderr)
